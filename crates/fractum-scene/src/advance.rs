@@ -8,26 +8,24 @@ use crate::clock::{Clock, Phase};
 use crate::conditions::Kick;
 use crate::scene::Scene;
 
-impl Scene {
-    /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
-    pub(crate) fn advance(&mut self, measure: bool, passed: &mut impl FnMut(Phase)) -> HalfSteps {
-        let (time, dt_before, dt_after) = (self.clock.time, self.clock.dt_before, self.clock.dt_after);
-        let mut work = if self.solid.is_subcycled() {
-            passed(Phase::Motion);
-            let work = advance_in_parts(self, measure);
-            passed(Phase::Subcycling);
-            work
-        } else {
-            advance_together(self, measure)
-        };
-        work += self.debris.turn(&self.solid, dt_before, dt_after, measure);
-        work += move_bonded(self, measure);
-        work += self.contacts.move_bodies(time, dt_before, dt_after);
-        work.after.external += 0.5 * dt_after * self.loads.power(&self.solid);
-        self.loads.spend_gas_work(&self.solid, dt_after);
-        book_late_damping(self, &work);
+/// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
+pub(crate) fn advance(scene: &mut Scene, measure: bool, passed: &mut impl FnMut(Phase)) -> HalfSteps {
+    let (time, dt_before, dt_after) = (scene.clock.time, scene.clock.dt_before, scene.clock.dt_after);
+    let mut work = if scene.solid.is_subcycled() {
+        passed(Phase::Motion);
+        let work = advance_in_parts(scene, measure);
+        passed(Phase::Subcycling);
         work
-    }
+    } else {
+        advance_together(scene, measure)
+    };
+    work += scene.debris.turn(&scene.solid, dt_before, dt_after, measure);
+    work += move_bonded(scene, measure);
+    work += scene.contacts.move_bodies(time, dt_before, dt_after);
+    work.after.external += 0.5 * dt_after * scene.loads.power(&scene.solid);
+    scene.loads.spend_gas_work(&scene.solid, dt_after);
+    book_late_damping(scene, &work);
+    work
 }
 
 /// Keeps apart what damping of nodes and particles takes in the second half of a run.

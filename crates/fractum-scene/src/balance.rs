@@ -15,24 +15,22 @@ const UNSTABLE_RATIO: f64 = 20.0;
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
 const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
-impl Scene {
-    /// The ledger of a state of equilibrium.
-    pub(crate) fn book_equilibrium(&mut self) -> Result<(), StepError> {
-        let Scene { ledger, solid, books, .. } = self;
-        ledger[EnergyKind::Elastic] = solid.elastic_energy();
-        ledger[EnergyKind::Damage] = solid.dissipated_energy();
-        ledger[EnergyKind::External] = books.external;
-        ledger[EnergyKind::Removed] = books.removed;
-        ledger[EnergyKind::Friction] = books.friction;
-        ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
-        ledger[EnergyKind::TimeStep] = books.time_step;
-        ledger.update_maxima();
-        if ledger.residual().is_finite() {
-            return Ok(());
-        }
-        let (step, time, dt, limit) = (self.clock.step, self.clock.time, self.clock.dt_before, f64::INFINITY);
-        Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(self) })
+/// The ledger of a state of equilibrium.
+pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
+    let Scene { ledger, solid, books, .. } = scene;
+    ledger[EnergyKind::Elastic] = solid.elastic_energy();
+    ledger[EnergyKind::Damage] = solid.dissipated_energy();
+    ledger[EnergyKind::External] = books.external;
+    ledger[EnergyKind::Removed] = books.removed;
+    ledger[EnergyKind::Friction] = books.friction;
+    ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
+    ledger[EnergyKind::TimeStep] = books.time_step;
+    ledger.update_maxima();
+    if ledger.residual().is_finite() {
+        return Ok(());
     }
+    let (step, time, dt, limit) = (scene.clock.step, scene.clock.time, scene.clock.dt_before, f64::INFINITY);
+    Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(scene) })
 }
 
 /// Completes the ledger of tⁿ and holds it against the guard.

@@ -8,6 +8,7 @@ use crate::domain::{Domain, Left};
 use crate::fragment::parts;
 use crate::ranks::{gather_contacts, gather_nodes};
 use crate::scene::Scene;
+use crate::stable_step::update_wall_frequency;
 use fractum_fem::removal;
 
 /// Steps between two looks for pieces that have left the domain.
@@ -29,17 +30,17 @@ impl Scene {
     pub fn left(&self) -> &Left {
         &self.removals.left
     }
+}
 
-    /// Whether a point of a population has left the run.
-    pub(crate) fn has_left(&self, population: Population) -> impl Fn(u32) -> bool + use<> {
-        let nodes = self.solid.reference.len();
-        let mut left: Vec<u32> = match population {
-            Population::Nodes => self.left().nodes(nodes).collect(),
-            Population::Particles => self.left().particles(nodes).collect(),
-        };
-        left.sort_unstable();
-        move |point| left.binary_search(&point).is_ok()
-    }
+/// Whether a point of a population has left the run.
+pub(crate) fn has_left(scene: &Scene, population: Population) -> impl Fn(u32) -> bool + use<> {
+    let nodes = scene.solid.reference.len();
+    let mut left: Vec<u32> = match population {
+        Population::Nodes => scene.left().nodes(nodes).collect(),
+        Population::Particles => scene.left().particles(nodes).collect(),
+    };
+    left.sort_unstable();
+    move |point| left.binary_search(&point).is_ok()
 }
 
 /// Has nothing push what has left, which rests where it was then.
@@ -149,7 +150,7 @@ fn take_leave(scene: &mut Scene, leaves: &[bool], piece: &[u32], dt: f64) {
     for ground in &mut scene.shape_contacts {
         ground.candidates.retain(|candidate| !leaves[candidate.node as usize]);
     }
-    scene.update_wall_frequency();
+    update_wall_frequency(scene);
     if !elements.is_empty() && !scene.settings.time_step.element_bound {
         scene.frequencies.stable = scene.solid.stable_step();
     }

@@ -6,7 +6,8 @@ use fractum_fem::neighbours::{self, SolidPart};
 use fractum_fem::{Solid, removal};
 use fractum_parallel::Exchange;
 
-use crate::scene::{Scene, SceneState};
+use crate::saved::{SceneState, state_with};
+use crate::scene::Scene;
 
 /// Nodes of solids and particles that every rank moves, since they are looked at after every step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -90,7 +91,7 @@ pub fn state_in_parts(scene: &mut Scene) -> Option<(SceneState, SolidPart)> {
     gather_particles(scene);
     gather_contacts(scene);
     gather_supports(scene);
-    Some((scene.state_with(neighbours::state_beside_parts(&scene.solid)), part))
+    Some((state_with(scene, neighbours::state_beside_parts(&scene.solid)), part))
 }
 
 /// A state by its parts, before the first step of a scene from the same case; none if they do not belong to it.

@@ -35,8 +35,8 @@ impl Scene {
     pub fn stable_dt(&self) -> f64 {
         let (Frequencies { stable, fine, .. }, contacts) = (self.frequencies, contact_frequency_square(self));
         let stable = match fine {
-            Some(fine) if contacts > 0.0 => self.stable_dt_at(fine.frequency, contacts),
-            _ => self.stable_dt_at(stable.frequency, contacts),
+            Some(fine) if contacts > 0.0 => stable_dt_at(self, fine.frequency, contacts),
+            _ => stable_dt_at(self, stable.frequency, contacts),
         };
         let motion = self.frequencies.motion;
         if motion * stable > PHASE { PHASE / motion } else { stable }
@@ -47,71 +47,71 @@ impl Scene {
         self.frequencies.motion > 0.0 && self.stable_dt() == PHASE / self.frequencies.motion
     }
 
-    /// - `solids`: highest frequency of the solids by themselves [rad/s]
-    /// - `contacts`: square of that of contacts [1/s²]
-    pub(crate) fn stable_dt_at(&self, solids: f64, contacts: f64) -> f64 {
-        let divisor = self.bonded.step_divisor();
-        let frequency = solids.max(self.bonded.frequency() * divisor).max(self.ties.frequency());
-        let Frequencies { walls_square, contact_square, .. } = self.frequencies;
-        let contacts = contacts + self.optional.surface_supports.frequency_square();
-        // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
-        let frequency = ((frequency * frequency + contacts) * (1.0 + self.settings.damping.local)).sqrt();
-        let contact = if walls_square + contact_square > 0.0 { self.debris.damping_ratio() } else { 0.0 };
-        let contact = contact.max(self.bonded.damping_ratio());
-        let damping = self.settings.damping;
-        let xi = 0.5 * self.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
-        let xi = xi + motion::bulk_damping_ratio(&self.solid);
-        2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
-    }
-
-    /// The step that follows `time`: the largest that is allowed and divides what is left into equal steps, since a
-    /// change of the step costs a little of the energy balance.
-    pub(crate) fn next_dt(&self, time: f64) -> f64 {
-        let TimeStepSettings { safety, fixed, end, .. } = self.settings.time_step;
-        let dt = fixed.unwrap_or_else(|| safety * self.stable_dt());
-        equal_steps(dt, end - time)
-    }
-
-    /// Finds, before the first step, what rigid shapes hold, and what their springs ask of the step.
-    pub(crate) fn prepare_shapes(&mut self) {
-        for ground in &mut self.shape_contacts {
-            ground.prepare(self.contacts.rigid_bodies(), &self.solid, &self.debris);
-        }
-        self.find_first_step();
-    }
-
     /// Whether a rigid body holds the nodes of solids that touch it in motion, by its number; springs press on them elsewhere. Known once the
     /// first step is.
     pub fn holds_nodes(&self, rigid_body: usize) -> bool {
         self.shape_contacts.iter().any(|ground| ground.rigid_body() == Some(rigid_body) && ground.holds_points())
     }
+}
 
-    /// Finds the first step, with springs on the rigid shapes as they stand.
-    pub(crate) fn find_first_step(&mut self) {
-        self.update_wall_frequency();
-        self.clock = Clock::new(self.next_dt(0.0));
+/// - `solids`: highest frequency of the solids by themselves [rad/s]
+/// - `contacts`: square of that of contacts [1/s²]
+pub(crate) fn stable_dt_at(scene: &Scene, solids: f64, contacts: f64) -> f64 {
+    let divisor = scene.bonded.step_divisor();
+    let frequency = solids.max(scene.bonded.frequency() * divisor).max(scene.ties.frequency());
+    let Frequencies { walls_square, contact_square, .. } = scene.frequencies;
+    let contacts = contacts + scene.optional.surface_supports.frequency_square();
+    // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
+    let frequency = ((frequency * frequency + contacts) * (1.0 + scene.settings.damping.local)).sqrt();
+    let contact = if walls_square + contact_square > 0.0 { scene.debris.damping_ratio() } else { 0.0 };
+    let contact = contact.max(scene.bonded.damping_ratio());
+    let damping = scene.settings.damping;
+    let xi = 0.5 * scene.settings.stiffness_time * frequency + 0.5 * damping.mass_rate / frequency + contact;
+    let xi = xi + motion::bulk_damping_ratio(&scene.solid);
+    2.0 / frequency * ((1.0 + xi * xi).sqrt() - xi)
+}
+
+/// The step that follows `time`: the largest that is allowed and divides what is left into equal steps, since a
+/// change of the step costs a little of the energy balance.
+pub(crate) fn next_dt(scene: &Scene, time: f64) -> f64 {
+    let TimeStepSettings { safety, fixed, end, .. } = scene.settings.time_step;
+    let dt = fixed.unwrap_or_else(|| safety * scene.stable_dt());
+    equal_steps(dt, end - time)
+}
+
+/// Finds, before the first step, what rigid shapes hold, and what their springs ask of the step.
+pub(crate) fn prepare_shapes(scene: &mut Scene) {
+    for ground in &mut scene.shape_contacts {
+        ground.prepare(scene.contacts.rigid_bodies(), &scene.solid, &scene.debris);
     }
+    find_first_step(scene);
+}
 
-    pub(crate) fn update_wall_frequency(&mut self) {
-        let Scene { solid, shape_contacts, debris, .. } = self;
-        let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid, debris)).sum();
-        self.frequencies.walls_square = RESOLUTION * RESOLUTION * walls;
+/// Finds the first step, with springs on the rigid shapes as they stand.
+pub(crate) fn find_first_step(scene: &mut Scene) {
+    update_wall_frequency(scene);
+    scene.clock = Clock::new(next_dt(scene, 0.0));
+}
+
+pub(crate) fn update_wall_frequency(scene: &mut Scene) {
+    let Scene { solid, shape_contacts, debris, .. } = scene;
+    let walls: f64 = shape_contacts.iter().map(|ground| ground.frequency_square(solid, debris)).sum();
+    scene.frequencies.walls_square = RESOLUTION * RESOLUTION * walls;
+}
+
+/// Takes the discrete elements that touch into account: the step gets shorter at once, and longer where `renew` holds and all
+/// contacts since then allow it. It changes by whole factors, since each change costs a little of the energy balance.
+///
+/// - `near`: whether to look for those that are about to touch
+pub(crate) fn update_contact_frequency(scene: &mut Scene, near: bool, renew: bool) {
+    let now = scene.debris.frequency_square(&scene.solid, near || renew);
+    let Frequencies { stable, contact_square, contact_peak, .. } = &mut scene.frequencies;
+    *contact_peak = contact_peak.max(now);
+    if now > *contact_square || renew {
+        *contact_square = rounded_up(*contact_peak, stable.frequency * stable.frequency);
     }
-
-    /// Takes the discrete elements that touch into account: the step gets shorter at once, and longer where `renew` holds and all
-    /// contacts since then allow it. It changes by whole factors, since each change costs a little of the energy balance.
-    ///
-    /// - `near`: whether to look for those that are about to touch
-    pub(crate) fn update_contact_frequency(&mut self, near: bool, renew: bool) {
-        let now = self.debris.frequency_square(&self.solid, near || renew);
-        let Frequencies { stable, contact_square, contact_peak, .. } = &mut self.frequencies;
-        *contact_peak = contact_peak.max(now);
-        if now > *contact_square || renew {
-            *contact_square = rounded_up(*contact_peak, stable.frequency * stable.frequency);
-        }
-        if renew {
-            *contact_peak = now;
-        }
+    if renew {
+        *contact_peak = now;
     }
 }
 

@@ -1,7 +1,7 @@
 use fractum_fem::{InvertedElement, motion, neighbours, removal};
 use fractum_math::Work;
 
-use crate::advance::start_half_a_step_early;
+use crate::advance::{advance, start_half_a_step_early};
 use crate::balance::book;
 use crate::clock::{Phase, ThisStep};
 use crate::conduct::{conduct, finish_expansion, heat_loses_elements};
@@ -10,6 +10,8 @@ use crate::error::StepError;
 use crate::leave::{hold_departed_particles, remove_departed_fragments, remove_departed_particles};
 use crate::ranks::{follow_near, follow_removal, gather_watched, search_together};
 use crate::scene::Scene;
+use crate::stable_step::{next_dt, update_contact_frequency, update_wall_frequency};
+use crate::subcycling::short_steps_in;
 use crate::watch::{Notice, Site};
 
 /// Relative difference of two steps that is rounding.
@@ -61,7 +63,7 @@ impl Scene {
         remove_departed_particles(self, step.dt_before);
         let expansion = conduct(self, step.dt_after, &mut passed)?;
         break_bonds(self, step.measure || step.changes, &mut passed);
-        let mut work = self.advance(step.measure || step.changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
+        let mut work = advance(self, step.measure || step.changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
         book(self, &step, contact, work, given)?;
@@ -72,65 +74,65 @@ impl Scene {
             passed(Phase::Transition);
         }
         look_at_debris(self, report.removed > 0, step.dt_after, &mut passed);
-        let dt = self.next_dt(step.time + step.dt_after);
+        let dt = next_dt(self, step.time + step.dt_after);
         self.clock.advance(dt);
         Ok(report)
     }
+}
 
-    /// The forces between bodies that probes ask for.
-    pub(crate) fn sum_watched_contacts(&mut self) {
-        gather_watched(self);
-        let Scene { contacts, solid, debris, bonded, shape_contacts, .. } = self;
-        contacts.sum_watched(&Touching { solid, debris, particles: &bonded.particles, shapes: shape_contacts });
+/// The forces between bodies that probes ask for.
+pub(crate) fn sum_watched_contacts(scene: &mut Scene) {
+    gather_watched(scene);
+    let Scene { contacts, solid, debris, bonded, shape_contacts, .. } = scene;
+    contacts.sum_watched(&Touching { solid, debris, particles: &bonded.particles, shapes: shape_contacts });
+}
+
+/// Elements that a crack has cut through leave; their nodes get discrete elements.
+///
+/// - `dt`: time since the forces were last computed [s]
+pub(crate) fn release_cut_elements(scene: &mut Scene, dt: f64) -> StepReport {
+    scene.removals.last.clear();
+    if let Some((body, element)) = motion::crushed_element(&scene.solid) {
+        scene.removals.tally.crushed += 1;
+        scene.note(Notice::Crushed, Site::Element { body, element }, 1.0);
     }
-
-    /// Elements that a crack has cut through leave; their nodes get discrete elements.
-    ///
-    /// - `dt`: time since the forces were last computed [s]
-    pub(crate) fn release_cut_elements(&mut self, dt: f64) -> StepReport {
-        self.removals.last.clear();
-        if let Some((body, element)) = motion::crushed_element(&self.solid) {
-            self.removals.tally.crushed += 1;
-            self.note(Notice::Crushed, Site::Element { body, element }, 1.0);
-        }
-        let energy = removal::remove_cut_elements(&mut self.solid, dt, &mut self.removals.last);
-        let mut report = StepReport { removed: self.removals.last.len(), ..StepReport::default() };
-        if report.removed > 0 {
-            follow_removal(self);
-            self.books.removed += energy;
-            heat_loses_elements(self);
-            self.loads.extend_cracks(&self.solid, &self.removals.last);
-            let before = self.debris.len();
-            self.debris.release(&self.solid, &self.removals.last);
-            report.particles_born = self.debris.len() - before;
-            for ground in &mut self.shape_contacts {
-                for &node in &self.debris.state().nodes[before..] {
-                    ground.watch_node(node, &self.solid, &self.debris);
-                }
-            }
-            self.update_wall_frequency();
-            self.bonded.gather_motion();
-            let Scene { contacts, solid, debris, bonded, removals, .. } = self;
-            contacts.release(solid, debris, &bonded.particles, &removals.last, before);
-            follow_near(self);
-            self.removals.tally.since_check += report.removed;
-        }
-        // Cells that lost elements may be stiffer for their mass than any before.
-        if self.removals.tally.since_check > 0 && self.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
-            self.removals.tally.since_check = 0;
-            if !self.settings.time_step.element_bound {
-                let present = self.solid.stable_step();
-                if present.frequency > self.frequencies.stable.frequency {
-                    self.frequencies.stable = present;
-                }
-                let fine = motion::fine_stable_step(&mut self.solid, false);
-                if fine.zip(self.frequencies.fine).is_some_and(|(now, before)| now.frequency > before.frequency) {
-                    self.frequencies.fine = fine;
-                }
+    let energy = removal::remove_cut_elements(&mut scene.solid, dt, &mut scene.removals.last);
+    let mut report = StepReport { removed: scene.removals.last.len(), ..StepReport::default() };
+    if report.removed > 0 {
+        follow_removal(scene);
+        scene.books.removed += energy;
+        heat_loses_elements(scene);
+        scene.loads.extend_cracks(&scene.solid, &scene.removals.last);
+        let before = scene.debris.len();
+        scene.debris.release(&scene.solid, &scene.removals.last);
+        report.particles_born = scene.debris.len() - before;
+        for ground in &mut scene.shape_contacts {
+            for &node in &scene.debris.state().nodes[before..] {
+                ground.watch_node(node, &scene.solid, &scene.debris);
             }
         }
-        report
+        update_wall_frequency(scene);
+        scene.bonded.gather_motion();
+        let Scene { contacts, solid, debris, bonded, removals, .. } = scene;
+        contacts.release(solid, debris, &bonded.particles, &removals.last, before);
+        follow_near(scene);
+        scene.removals.tally.since_check += report.removed;
     }
+    // Cells that lost elements may be stiffer for their mass than any before.
+    if scene.removals.tally.since_check > 0 && scene.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS) {
+        scene.removals.tally.since_check = 0;
+        if !scene.settings.time_step.element_bound {
+            let present = scene.solid.stable_step();
+            if present.frequency > scene.frequencies.stable.frequency {
+                scene.frequencies.stable = present;
+            }
+            let fine = motion::fine_stable_step(&mut scene.solid, false);
+            if fine.zip(scene.frequencies.fine).is_some_and(|(now, before)| now.frequency > before.frequency) {
+                scene.frequencies.fine = fine;
+            }
+        }
+    }
+    report
 }
 
 /// Instants and sizes of the step that begins.
@@ -151,7 +153,7 @@ fn this_step(scene: &Scene, measure: bool) -> ThisStep {
 /// Forces of the stress in solids at tⁿ.
 fn add_internal_forces(scene: &mut Scene, step: &ThisStep, passed: &mut impl FnMut(Phase)) -> Result<(), StepError> {
     neighbours::move_all_nodes_next(&mut scene.solid, step.changes); // supports change their kinetic energy
-    let parts = scene.parts(step.dt_after);
+    let parts = short_steps_in(scene, step.dt_after);
     motion::set_short_steps(&mut scene.solid, parts, step.is_first);
     if scene.solid.body_count() > 0 {
         scene.solid.update_internal_forces(step.elapsed, step.measure);
@@ -178,7 +180,7 @@ fn look_at_debris(scene: &mut Scene, has_grown: bool, dt: f64, passed: &mut impl
     remove_departed_fragments(scene, dt);
     if !scene.debris.is_empty() {
         let renew = scene.clock.step.is_multiple_of(STEPS_BETWEEN_CHECKS);
-        scene.update_contact_frequency(has_grown, renew);
+        update_contact_frequency(scene, has_grown, renew);
         passed(Phase::Contact);
     }
 }
@@ -235,7 +237,7 @@ fn apply_tie_forces(scene: &mut Scene, passed: &mut impl FnMut(Phase)) {
 
 /// Whether there is anything that could touch: particles, discrete elements, rigid bodies, or solids apart.
 fn may_touch(scene: &Scene) -> bool {
-    !scene.contacts.is_empty() || scene.has_contacts()
+    !(scene.contacts.is_empty() && scene.shape_contacts.is_empty() && scene.debris.is_empty())
 }
 
 /// Has rigid shapes hold nodes of solids against all other forces; all contacts are known then.
@@ -249,7 +251,7 @@ fn hold_solid_nodes(scene: &mut Scene, elapsed: f64, measure: bool) -> Work {
     let work = hold_nodes(shape_contacts, contacts.rigid_bodies_mut(), solid, &step);
     scene.books.stopped += work.damping;
     if measure {
-        scene.sum_watched_contacts();
+        sum_watched_contacts(scene);
     }
     work
 }
@@ -280,5 +282,5 @@ fn change_solids(scene: &mut Scene, dt: f64) -> StepReport {
     let mut turning = Vec::new();
     // What small strains had found beyond was never put in.
     scene.books.time_step += motion::let_turn(&mut scene.solid, scene.clock.step, dt, &mut turning);
-    StepReport { turning, ..scene.release_cut_elements(dt) }
+    StepReport { turning, ..release_cut_elements(scene, dt) }
 }

@@ -7,6 +7,7 @@ use fractum_math::{Rotation, Vec3};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Points, Population, mean};
+use crate::leave::has_left;
 use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
@@ -89,7 +90,7 @@ impl GaugeGrid {
     /// The readings of the present instant, in the order of the places. Those with a point that has left the run have no numbers.
     pub fn readings(&self, scene: &Scene) -> Vec<GaugeReading> {
         let all = points_of(&scene.bonded, &scene.solid, self.population);
-        let has_left = scene.has_left(self.population);
+        let has_left = has_left(scene, self.population);
         let reading = |gauge: &Gauge| {
             let reading = gauge.reading(|i| all.displacement(i));
             if gauge.points.iter().any(|&i| has_left(i)) {
@@ -159,7 +160,7 @@ impl Probe for Extensometer {
     /// point of a foot has left the run.
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        let has_left = scene.has_left(self.population);
+        let has_left = has_left(scene, self.population);
         if self.feet.iter().flatten().any(|&i| has_left(i)) {
             return f64::NAN;
         }

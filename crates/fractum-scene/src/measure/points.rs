@@ -4,6 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use crate::conditions::{Along, Points, Population, Supports, mean};
+use crate::leave::has_left;
 use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
@@ -145,7 +146,7 @@ impl ProbeOfPoints {
 impl Probe for ProbeOfPoints {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        let (dt, has_left) = (scene.clock.dt_before, scene.has_left(self.population));
+        let (dt, has_left) = (scene.clock.dt_before, has_left(scene, self.population));
         match self.population {
             Population::Nodes => self.probe.value(&scene.solid, scene.supports(), dt, has_left),
             Population::Particles => self.probe.value(&scene.bonded, scene.bonded.supports(), dt, has_left),

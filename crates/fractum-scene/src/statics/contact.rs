@@ -19,6 +19,7 @@ use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 use crate::statics::anderson::Anderson;
 use crate::statics::check_supports;
+use crate::step::sum_watched_contacts;
 
 /// Gap over the size of the solid up to which a node counts as touching: what rounding leaves of a body that lies on a shape.
 const TOUCHING: f64 = 1e-9;
@@ -153,207 +154,207 @@ impl Scene {
     /// # Errors
     /// [`SceneError::FreeBody`] with the body and the motion.
     pub fn check_supports(&self) -> Result<(), SceneError> {
-        let springs = self.springs_at_rest();
+        let springs = springs_at_rest(self);
         let touched: Vec<(u32, Vec3)> = springs.iter().map(|spring| (spring.node, spring.normal)).collect();
         check_supports(&self.solid, self.supports.held(), &touched)
     }
+}
 
-    /// Springs of the nodes that touch at the last equilibrium, and of those that just do not.
-    pub(super) fn springs_at_rest(&self) -> Vec<Spring> {
-        self.springs(&self.solid.displacement, [self.clock.time; 2], 1.0, 1.0, Also::Near)
+/// Springs of the nodes that touch at the last equilibrium, and of those that just do not.
+pub(super) fn springs_at_rest(scene: &Scene) -> Vec<Spring> {
+    contact_springs(scene, &scene.solid.displacement, [scene.clock.time; 2], 1.0, 1.0, Also::Near)
+}
+
+/// Springs of the nodes that touch shapes or each other under a displacement field.
+///
+/// - `times`: load parameters of the last equilibrium and of the field
+/// - `ahead`: duration from which the pace of the shapes is taken [s]
+/// - `slipping`: part of the secant of friction by which what slips is held along its way, where its force does not change: all of
+///   it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
+///   only friction holds without a stiffness
+/// - `also`: what does not touch, and has a spring
+pub(super) fn contact_springs(
+    scene: &Scene,
+    field: &[Vec3],
+    times: [f64; 2],
+    ahead: f64,
+    slipping: f64,
+    also: Also,
+) -> Vec<Spring> {
+    let pushed = |push: Push| {
+        let stiffness = push.normal * push.normal.transpose() * push.stiffness;
+        let force = push.normal * (push.stiffness * push.overlap);
+        let [partner, node] = push.nodes;
+        let (partner, rate) = (Some(partner), Vec3::zeros());
+        Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
+    };
+    let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
+    if scene.shape_contacts.is_empty() {
+        return springs;
     }
-
-    /// Springs of the nodes that touch shapes or each other under a displacement field.
-    ///
-    /// - `times`: load parameters of the last equilibrium and of the field
-    /// - `ahead`: duration from which the pace of the shapes is taken [s]
-    /// - `slipping`: part of the secant of friction by which what slips is held along its way, where its force does not change: all of
-    ///   it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
-    ///   only friction holds without a stiffness
-    /// - `also`: what does not touch, and has a spring
-    pub(super) fn springs(
-        &self,
-        field: &[Vec3],
-        times: [f64; 2],
-        ahead: f64,
-        slipping: f64,
-        also: Also,
-    ) -> Vec<Spring> {
-        let pushed = |push: Push| {
-            let stiffness = push.normal * push.normal.transpose() * push.stiffness;
-            let force = push.normal * (push.stiffness * push.overlap);
-            let [partner, node] = push.nodes;
-            let (partner, rate) = (Some(partner), Vec3::zeros());
-            Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
-        };
-        let mut springs: Vec<Spring> = self.debris.pushes(&self.solid, field).map(pushed).collect();
-        if self.shape_contacts.is_empty() {
-            return springs;
+    let size = scene.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
+    let gap = if matches!(also, Also::Near) { TOUCHING * size } else { 0.0 };
+    for (index, ground) in (0..).zip(&scene.shape_contacts) {
+        let (mut frame, way, pace) = motion_of(scene, ground, times, ahead);
+        frame.origin += way;
+        for c in &ground.candidates {
+            let i = c.node as usize;
+            let (normal, overlap) = sense(ground, &frame, c, &(scene.solid.reference[i] + field[i]));
+            let kept = also.kept(index, c.node);
+            if overlap <= -gap && kept.is_none() {
+                continue;
+            }
+            let [stiff, stiff_across] = stiffness(c);
+            // What a curved shape has left by the way along it is no loss of pressure.
+            // How far a node that has just come went in is not how it will be pressed: it rubs from the next iterate on.
+            let is_new = matches!(also, Also::Kept(_)) && kept.is_none();
+            let pressure = if is_new { 0.0 } else { kept.unwrap_or(stiff * overlap.max(0.0)) };
+            let moved = field[i] - scene.solid.displacement[i] - way;
+            let Tangential { slip, slid, .. } = tangential(c, &normal, pressure, moved);
+            // What slips has a force that is given, and turns with its way.
+            let (held, went) = (slip.norm(), slid.norm());
+            let holds = if held > 0.0 {
+                stiff_across * held / (held + went)
+            } else if went == 0.0 && pressure > 0.0 && c.law.friction > 0.0 {
+                stiff_across
+            } else {
+                0.0
+            };
+            let along = normal * normal.transpose();
+            let mut stiffness = along * stiff + (Mat3::identity() - along) * holds;
+            if went > 0.0 && held > 0.0 {
+                let way = slip / held;
+                stiffness -= way * way.transpose() * ((1.0 - slipping) * holds);
+            }
+            let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
+            let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;
+            let rate = stiffness * pace;
+            springs.push(Spring { node: c.node, partner: None, ground: index, normal, force, stiffness, rate });
         }
-        let size = self.solid.reference.iter().map(|p| p.norm()).fold(0.0, f64::max);
-        let gap = if matches!(also, Also::Near) { TOUCHING * size } else { 0.0 };
-        for (index, ground) in (0..).zip(&self.shape_contacts) {
-            let (mut frame, way, pace) = self.motion_of(ground, times, ahead);
-            frame.origin += way;
-            for c in &ground.candidates {
-                let i = c.node as usize;
-                let (normal, overlap) = sense(ground, &frame, c, &(self.solid.reference[i] + field[i]));
-                let kept = also.kept(index, c.node);
-                if overlap <= -gap && kept.is_none() {
-                    continue;
-                }
-                let [stiff, stiff_across] = stiffness(c);
-                // What a curved shape has left by the way along it is no loss of pressure.
-                // How far a node that has just come went in is not how it will be pressed: it rubs from the next iterate on.
-                let is_new = matches!(also, Also::Kept(_)) && kept.is_none();
-                let pressure = if is_new { 0.0 } else { kept.unwrap_or(stiff * overlap.max(0.0)) };
-                let moved = field[i] - self.solid.displacement[i] - way;
-                let Tangential { slip, slid, .. } = tangential(c, &normal, pressure, moved);
-                // What slips has a force that is given, and turns with its way.
-                let (held, went) = (slip.norm(), slid.norm());
-                let holds = if held > 0.0 {
-                    stiff_across * held / (held + went)
-                } else if went == 0.0 && pressure > 0.0 && c.law.friction > 0.0 {
-                    stiff_across
-                } else {
-                    0.0
-                };
-                let along = normal * normal.transpose();
-                let mut stiffness = along * stiff + (Mat3::identity() - along) * holds;
-                if went > 0.0 && held > 0.0 {
-                    let way = slip / held;
-                    stiffness -= way * way.transpose() * ((1.0 - slipping) * holds);
-                }
-                let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
-                let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;
-                let rate = stiffness * pace;
-                springs.push(Spring { node: c.node, partner: None, ground: index, normal, force, stiffness, rate });
+    }
+    springs
+}
+
+/// Where a shape was at the last equilibrium, the way it has gone since, and its pace.
+fn motion_of(scene: &Scene, ground: &NodesOnShape, [present, time]: [f64; 2], ahead: f64) -> (Frame, Vec3, Vec3) {
+    match ground.rigid_body.and_then(|index| scene.contacts.rigid_bodies().get(index)) {
+        Some(rigid_body) => {
+            (rigid_body.frame, rigid_body.way(present, time), rigid_body.way(time, time + ahead) / ahead)
+        }
+        None => (ground.frame, Vec3::zeros(), Vec3::zeros()),
+    }
+}
+
+/// Starts from the friction of the last equilibrium.
+pub(super) fn forget_brought_back(scene: &mut Scene) {
+    let candidates = scene.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
+    candidates.for_each(|c| c.brought_back = Vec3::zeros());
+}
+
+/// Brings back what sticks but has given way since the last equilibrium; whether that is more than [`STUCK`].
+///
+/// - `field`: displacements at which forces balance
+/// - `times`: load parameters of the last equilibrium and of the field
+pub(super) fn bring_back(scene: &mut Scene, field: &[Vec3], times: [f64; 2], mixer: &mut Anderson) -> bool {
+    let (mut gave, mut forces) = (0.0, 0.0);
+    let (mut stretch, mut image) = (Vec::new(), Vec::new());
+    for ground in &scene.shape_contacts {
+        let (mut frame, way, _) = motion_of(scene, ground, times, 1.0);
+        frame.origin += way;
+        for c in ground.candidates.iter().filter(|c| c.law.friction > 0.0) {
+            let i = c.node as usize;
+            let (normal, overlap) = sense(ground, &frame, c, &(scene.solid.reference[i] + field[i]));
+            let [stiff, stiff_across] = stiffness(c);
+            let moved = field[i] - scene.solid.displacement[i] - way;
+            let found = tangential(c, &normal, stiff * overlap.max(0.0), moved);
+            forces += (stiff_across * found.slip).norm_squared();
+            // What slips along its own friction has not yet turned round.
+            if overlap > 0.0 && (found.slid == Vec3::zeros() || found.moved.dot(&found.slip) < 0.0) {
+                gave += (stiff_across * found.moved).norm_squared();
+            }
+            stretch.extend_from_slice(c.brought_back.as_slice());
+            image.extend_from_slice((found.slip - c.memory.slip).as_slice());
+        }
+    }
+    if gave <= STUCK * STUCK * forces {
+        return false;
+    }
+    mixer.next(&mut stretch, &image);
+    let candidates = scene.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
+    for (c, stretch) in candidates.filter(|c| c.law.friction > 0.0).zip(stretch.chunks_exact(3)) {
+        c.brought_back = Vec3::from_column_slice(stretch);
+    }
+    true
+}
+
+/// Takes over the contacts of a state of equilibrium: memories, forces on the rigid bodies, their places, and the ledger.
+///
+/// - `before`: displacements at the last equilibrium; those of the scene are the new ones
+pub(super) fn accept_contacts(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {
+    if !has_contacts(scene) {
+        return;
+    }
+    scene.books.external -= scene.debris.accept_at_rest(&scene.solid, before);
+    if !scene.shape_contacts.is_empty() {
+        accept_grounds(scene, before, present, time);
+    }
+    let on_grounds: f64 = scene.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
+    scene.ledger[EnergyKind::Contact] = on_grounds + scene.debris.stored();
+    sum_watched_contacts(scene);
+}
+
+/// Whether anything can touch at equilibrium.
+pub(super) fn has_contacts(scene: &Scene) -> bool {
+    !(scene.shape_contacts.is_empty() && scene.debris.is_empty())
+}
+
+fn accept_grounds(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {
+    scene.contacts.rigid_bodies_mut().iter_mut().for_each(RigidBody::clear_forces);
+    let (mut friction, mut external) = (0.0, 0.0);
+    for index in 0..scene.shape_contacts.len() {
+        let (old, way, _) = motion_of(scene, &scene.shape_contacts[index], [present, time], 1.0);
+        let new = Frame { origin: old.origin + way, ..old };
+        let Scene { shape_contacts, contacts, solid, debris, .. } = scene;
+        let mut candidates = std::mem::take(&mut shape_contacts[index].candidates);
+        let ground = &shape_contacts[index];
+        for c in &mut candidates {
+            let i = c.node as usize;
+            let place = solid.position(i);
+            let (_, was) = sense(ground, &old, c, &(solid.reference[i] + before[i]));
+            let (normal, overlap) = sense(ground, &new, c, &place);
+            let [stiff, stiff_across] = stiffness(c);
+            let pressure = stiff * overlap.max(0.0);
+            let full = debris.radius_if_particle(c.node);
+            if c.radius == 0.0 && full > 0.0 && -overlap > full {
+                c.radius = full;
+            }
+            let Tangential { slip, moved, .. } =
+                tangential(c, &normal, pressure, solid.displacement[i] - before[i] - way);
+            friction += 0.5 * stiff_across * (c.memory.slip + slip).dot(&moved);
+            let half = 0.5 * stiff;
+            // The way to a contact is without force, and so is that from it.
+            let idle = half
+                * ((overlap.max(0.0) + was.max(0.0)) * (overlap - was)
+                    - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
+            let force = normal * pressure - slip * stiff_across;
+            external += 0.5 * (c.force + force).dot(&way) - idle;
+            (c.memory.slip, c.brought_back) = (slip, Vec3::zeros());
+            (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
+            c.stored = half * overlap.max(0.0).powi(2);
+            (c.friction, c.damping) = (0.0, 0.0);
+            (c.is_held, c.is_pushed) = (false, false);
+            if let Some(rigid_body) =
+                ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
+            {
+                rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm));
             }
         }
-        springs
+        shape_contacts[index].candidates = candidates;
     }
-
-    /// Where a shape was at the last equilibrium, the way it has gone since, and its pace.
-    fn motion_of(&self, ground: &NodesOnShape, [present, time]: [f64; 2], ahead: f64) -> (Frame, Vec3, Vec3) {
-        match ground.rigid_body.and_then(|index| self.contacts.rigid_bodies().get(index)) {
-            Some(rigid_body) => {
-                (rigid_body.frame, rigid_body.way(present, time), rigid_body.way(time, time + ahead) / ahead)
-            }
-            None => (ground.frame, Vec3::zeros(), Vec3::zeros()),
-        }
+    for rigid_body in scene.contacts.rigid_bodies_mut() {
+        rigid_body.frame.origin += rigid_body.way(present, time);
+        rigid_body.frame.velocity = Vec3::zeros();
     }
-
-    /// Starts from the friction of the last equilibrium.
-    pub(super) fn forget_brought_back(&mut self) {
-        let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
-        candidates.for_each(|c| c.brought_back = Vec3::zeros());
-    }
-
-    /// Brings back what sticks but has given way since the last equilibrium; whether that is more than [`STUCK`].
-    ///
-    /// - `field`: displacements at which forces balance
-    /// - `times`: load parameters of the last equilibrium and of the field
-    pub(super) fn bring_back(&mut self, field: &[Vec3], times: [f64; 2], mixer: &mut Anderson) -> bool {
-        let (mut gave, mut forces) = (0.0, 0.0);
-        let (mut stretch, mut image) = (Vec::new(), Vec::new());
-        for ground in &self.shape_contacts {
-            let (mut frame, way, _) = self.motion_of(ground, times, 1.0);
-            frame.origin += way;
-            for c in ground.candidates.iter().filter(|c| c.law.friction > 0.0) {
-                let i = c.node as usize;
-                let (normal, overlap) = sense(ground, &frame, c, &(self.solid.reference[i] + field[i]));
-                let [stiff, stiff_across] = stiffness(c);
-                let moved = field[i] - self.solid.displacement[i] - way;
-                let found = tangential(c, &normal, stiff * overlap.max(0.0), moved);
-                forces += (stiff_across * found.slip).norm_squared();
-                // What slips along its own friction has not yet turned round.
-                if overlap > 0.0 && (found.slid == Vec3::zeros() || found.moved.dot(&found.slip) < 0.0) {
-                    gave += (stiff_across * found.moved).norm_squared();
-                }
-                stretch.extend_from_slice(c.brought_back.as_slice());
-                image.extend_from_slice((found.slip - c.memory.slip).as_slice());
-            }
-        }
-        if gave <= STUCK * STUCK * forces {
-            return false;
-        }
-        mixer.next(&mut stretch, &image);
-        let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
-        for (c, stretch) in candidates.filter(|c| c.law.friction > 0.0).zip(stretch.chunks_exact(3)) {
-            c.brought_back = Vec3::from_column_slice(stretch);
-        }
-        true
-    }
-
-    /// Takes over the contacts of a state of equilibrium: memories, forces on the rigid bodies, their places, and the ledger.
-    ///
-    /// - `before`: displacements at the last equilibrium; those of the scene are the new ones
-    pub(super) fn accept_contacts(&mut self, before: &[Vec3], present: f64, time: f64) {
-        if !self.has_contacts() {
-            return;
-        }
-        self.books.external -= self.debris.accept_at_rest(&self.solid, before);
-        if !self.shape_contacts.is_empty() {
-            self.accept_grounds(before, present, time);
-        }
-        let on_grounds: f64 = self.shape_contacts.iter().flat_map(|ground| &ground.candidates).map(|c| c.stored).sum();
-        self.ledger[EnergyKind::Contact] = on_grounds + self.debris.stored();
-        self.sum_watched_contacts();
-    }
-
-    /// Whether anything can touch at equilibrium.
-    pub(crate) fn has_contacts(&self) -> bool {
-        !(self.shape_contacts.is_empty() && self.debris.is_empty())
-    }
-
-    fn accept_grounds(&mut self, before: &[Vec3], present: f64, time: f64) {
-        self.contacts.rigid_bodies_mut().iter_mut().for_each(RigidBody::clear_forces);
-        let (mut friction, mut external) = (0.0, 0.0);
-        for index in 0..self.shape_contacts.len() {
-            let (old, way, _) = self.motion_of(&self.shape_contacts[index], [present, time], 1.0);
-            let new = Frame { origin: old.origin + way, ..old };
-            let Scene { shape_contacts, contacts, solid, debris, .. } = self;
-            let mut candidates = std::mem::take(&mut shape_contacts[index].candidates);
-            let ground = &shape_contacts[index];
-            for c in &mut candidates {
-                let i = c.node as usize;
-                let place = solid.position(i);
-                let (_, was) = sense(ground, &old, c, &(solid.reference[i] + before[i]));
-                let (normal, overlap) = sense(ground, &new, c, &place);
-                let [stiff, stiff_across] = stiffness(c);
-                let pressure = stiff * overlap.max(0.0);
-                let full = debris.radius_if_particle(c.node);
-                if c.radius == 0.0 && full > 0.0 && -overlap > full {
-                    c.radius = full;
-                }
-                let Tangential { slip, moved, .. } =
-                    tangential(c, &normal, pressure, solid.displacement[i] - before[i] - way);
-                friction += 0.5 * stiff_across * (c.memory.slip + slip).dot(&moved);
-                let half = 0.5 * stiff;
-                // The way to a contact is without force, and so is that from it.
-                let idle = half
-                    * ((overlap.max(0.0) + was.max(0.0)) * (overlap - was)
-                        - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
-                let force = normal * pressure - slip * stiff_across;
-                external += 0.5 * (c.force + force).dot(&way) - idle;
-                (c.memory.slip, c.brought_back) = (slip, Vec3::zeros());
-                (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
-                c.stored = half * overlap.max(0.0).powi(2);
-                (c.friction, c.damping) = (0.0, 0.0);
-                (c.is_held, c.is_pushed) = (false, false);
-                if let Some(rigid_body) =
-                    ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
-                {
-                    rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm));
-                }
-            }
-            shape_contacts[index].candidates = candidates;
-        }
-        for rigid_body in self.contacts.rigid_bodies_mut() {
-            rigid_body.frame.origin += rigid_body.way(present, time);
-            rigid_body.frame.velocity = Vec3::zeros();
-        }
-        self.books.friction += friction;
-        self.books.external += external;
-    }
+    scene.books.friction += friction;
+    scene.books.external += external;
 }

@@ -32,57 +32,57 @@ impl Scene {
         system.prepare(self, &self.solid.cell_damage(), &[]).map_err(|error| unsolved(error.to_string()))?;
         let mut change = vec![Vec3::zeros(); self.solid.reference.len()];
         for _ in 0..MOST_SOLUTIONS {
-            let (missing, scale) = self.forces_at_start(&held);
+            let (missing, scale) = forces_at_start(self, &held);
             if missing <= TOLERANCES[1] * scale {
-                self.check_pins(&held, scale)?;
+                check_pins(self, &held, scale)?;
                 self.solid.initial_displacement = self.solid.displacement.clone();
                 return Ok(());
             }
             system.solve(&self.solid.force, &mut change).map_err(|error| unsolved(error.to_string()))?;
             self.solid.displacement.iter_mut().zip(&change).for_each(|(u, change)| *u += change);
-            self.check_strength()?;
+            check_strength(self)?;
         }
         Err(unsolved(format!("forces did not balance after {MOST_SOLUTIONS} solutions")))
     }
+}
 
-    /// Leaves all forces of t = 0 in `solid.force`; those that are missing on free unknowns, and all that act [N].
-    fn forces_at_start(&mut self, held: &[u8]) -> (f64, f64) {
-        self.solid.update_internal_forces(0.0, false);
-        let inner = self.solid.force.clone();
-        self.loads.add_forces(&mut self.solid, 0.0, 0.0);
-        let (mut missing, mut scale) = (0.0, 0.0);
-        for ((force, inner), bits) in self.solid.force.iter().zip(&inner).zip(held) {
-            scale += (force - inner).norm_squared();
-            missing += (0..3).filter(|axis| bits & (1 << axis) == 0).map(|axis| force[axis] * force[axis]).sum::<f64>();
-        }
-        (f64::sqrt(missing), f64::sqrt(scale))
+/// Leaves all forces of t = 0 in `solid.force`; those that are missing on free unknowns, and all that act [N].
+fn forces_at_start(scene: &mut Scene, held: &[u8]) -> (f64, f64) {
+    scene.solid.update_internal_forces(0.0, false);
+    let inner = scene.solid.force.clone();
+    scene.loads.add_forces(&mut scene.solid, 0.0, 0.0);
+    let (mut missing, mut scale) = (0.0, 0.0);
+    for ((force, inner), bits) in scene.solid.force.iter().zip(&inner).zip(held) {
+        scale += (force - inner).norm_squared();
+        missing += (0..3).filter(|axis| bits & (1 << axis) == 0).map(|axis| force[axis] * force[axis]).sum::<f64>();
     }
+    (f64::sqrt(missing), f64::sqrt(scale))
+}
 
-    /// What only keeps the solids in place must carry nothing, but for the moment that forces on elements that turn get as
-    /// their places move.
-    fn check_pins(&self, held: &[u8], scale: f64) -> Result<(), SceneError> {
-        let largest = |vectors: &[Vec3]| vectors.iter().map(|v| v.norm()).fold(0.0, f64::max);
-        let moved = largest(&self.solid.displacement) / largest(&self.solid.reference).max(f64::MIN_POSITIVE);
-        let allowed = UNBALANCED.max(MOVED * moved);
-        for (node, (&all, force)) in held.iter().zip(&self.solid.force).enumerate() {
-            let own = all & !self.supports.held().get(node).copied().unwrap_or(0);
-            let carried = Vec3::from_fn(|axis, _| if own & (1 << axis) == 0 { 0.0 } else { force[axis] });
-            if carried.norm() > allowed * scale {
-                let [x, y, z] = carried.into();
-                return Err(SceneError::InSituUnbalanced { x, y, z });
-            }
+/// What only keeps the solids in place must carry nothing, but for the moment that forces on elements that turn get as
+/// their places move.
+fn check_pins(scene: &Scene, held: &[u8], scale: f64) -> Result<(), SceneError> {
+    let largest = |vectors: &[Vec3]| vectors.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    let moved = largest(&scene.solid.displacement) / largest(&scene.solid.reference).max(f64::MIN_POSITIVE);
+    let allowed = UNBALANCED.max(MOVED * moved);
+    for (node, (&all, force)) in held.iter().zip(&scene.solid.force).enumerate() {
+        let own = all & !scene.supports.held().get(node).copied().unwrap_or(0);
+        let carried = Vec3::from_fn(|axis, _| if own & (1 << axis) == 0 { 0.0 } else { force[axis] });
+        if carried.norm() > allowed * scale {
+            let [x, y, z] = carried.into();
+            return Err(SceneError::InSituUnbalanced { x, y, z });
         }
-        Ok(())
     }
+    Ok(())
+}
 
-    /// No edge may be over its strength.
-    fn check_strength(&self) -> Result<(), SceneError> {
-        match self.solid.most_strained_edge() {
-            Some((body, at, ratio)) if ratio > 1.0 => {
-                let [x, y, z] = at.into();
-                Err(SceneError::InSituBreaks { body: self.solid.body(body).name.clone(), x, y, z, ratio })
-            }
-            _ => Ok(()),
+/// No edge may be over its strength.
+fn check_strength(scene: &Scene) -> Result<(), SceneError> {
+    match scene.solid.most_strained_edge() {
+        Some((body, at, ratio)) if ratio > 1.0 => {
+            let [x, y, z] = at.into();
+            Err(SceneError::InSituBreaks { body: scene.solid.body(body).name.clone(), x, y, z, ratio })
         }
+        _ => Ok(()),
     }
 }

@@ -3,8 +3,8 @@
 use fractum_fem::{DamagePoint, Seen, Solid};
 use fractum_math::Vec3;
 
-use super::contact::{Also, Spring};
-use super::equilibrium::Boundary;
+use super::contact::{Also, Spring, bring_back, contact_springs, forget_brought_back, has_contacts};
+use super::equilibrium::{Boundary, boundary_at, check_loose, come_apart, unbalance};
 use super::{
     Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, Touching, path,
 };
@@ -49,7 +49,7 @@ impl StaticSolver {
         self.system.begin();
         self.begin(scene, points, growth, by_damage && !monotone);
         let (mut tau, mut found_at) = (longest, present);
-        scene.forget_brought_back();
+        forget_brought_back(scene);
         self.touching.stretch.reset();
         let most = if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] };
         // What sticks has moved a little at each equilibrium but the last.
@@ -64,28 +64,30 @@ impl StaticSolver {
             let slipping = SLIPPING[usize::from(iteration > SLIPPING_FREELY[usize::from(monotone)])];
             self.find_contacts(scene, [present, found_at], longest, slipping, first)?;
             let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
-            let here = scene.boundary_at(present, present);
-            let there = scene.boundary_at(present, present + ahead);
+            let here = boundary_at(scene, present, present);
+            let there = boundary_at(scene, present, present + ahead);
             self.respond(scene, &here, &there, ahead, present - found_at)?;
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
             tau = found;
             self.advance(&scene.solid, points, tau, monotone);
-            let mut exact = scene.boundary_at(present, present + tau);
-            if scene.has_contacts() {
+            let mut exact = boundary_at(scene, present, present + tau);
+            if has_contacts(scene) {
                 let since = present + tau - found_at;
                 found_at = present + tau;
                 self.touching.keep(&self.response.start, since);
                 self.touching.place.clone_from(&self.response.start);
                 scene.debris.meet(&scene.solid, &self.touching.place);
-                for spring in scene.springs(&self.touching.place, [present, found_at], longest, 1.0, Also::Nothing) {
+                for spring in
+                    contact_springs(scene, &self.touching.place, [present, found_at], longest, 1.0, Also::Nothing)
+                {
                     spring.push(spring.force, &mut exact.force);
                 }
             }
             let (missing, forces) =
-                scene.unbalance(&self.trial, &self.response.start, &exact.force, &mut self.response.right);
+                unbalance(scene, &self.trial, &self.response.start, &exact.force, &mut self.response.right);
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 slowest = slowest.max(iteration);
-                if scene.bring_back(&self.response.start, [present, present + tau], &mut self.touching.stretch) {
+                if bring_back(scene, &self.response.start, [present, present + tau], &mut self.touching.stretch) {
                     if brought_back == MOST_BROUGHT_BACK {
                         return Ok(None);
                     }
@@ -96,8 +98,8 @@ impl StaticSolver {
                 return Ok(Some((present + tau, slowest)));
             }
             // Of an elastic step nothing but the linear solution is left to improve.
-            let linear = points.is_empty() && !scene.has_contacts();
-            if linear && !self.system.sharpen().map_err(|error| scene.come_apart(error))? {
+            let linear = points.is_empty() && !has_contacts(scene);
+            if linear && !self.system.sharpen().map_err(|error| come_apart(scene, error))? {
                 return Ok(None);
             }
             let Edges { seen, loading, image } = &mut self.edges;
@@ -159,11 +161,11 @@ impl StaticSolver {
     ) -> Result<(), StepError> {
         scene.debris.meet(&scene.solid, &self.touching.place);
         let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
-        self.touching.springs = scene.springs(&self.touching.place, times, longest, slipping, also);
+        self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, slipping, also);
         self.couple(scene)?;
         if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
             let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
-            prepared.map_err(|e| scene.come_apart(e))?;
+            prepared.map_err(|e| come_apart(scene, e))?;
             self.prepared = true;
         }
         Ok(())
@@ -224,7 +226,7 @@ impl StaticSolver {
         self.touching.pairs.extend(found);
         if self.touching.pairs.len() > self.touching.coupled {
             let work = *self.system.work();
-            self.system = self.settings.lay_out(scene, &self.touching.pairs).map_err(|e| scene.come_apart(e))?;
+            self.system = self.settings.lay_out(scene, &self.touching.pairs).map_err(|e| come_apart(scene, e))?;
             *self.system.work() = work;
             (self.touching.coupled, self.prepared) = (self.touching.pairs.len(), false);
         }
@@ -255,8 +257,8 @@ impl StaticSolver {
         for (i, anchor) in self.system.anchors().iter().enumerate() {
             self.response.right[i] += (self.touching.place[i] - field[i]) * *anchor;
         }
-        self.system.solve(&self.response.right, &mut self.response.start).map_err(|e| scene.come_apart(e))?;
-        scene.check_loose(&self.response.start, 1.0)?;
+        self.system.solve(&self.response.right, &mut self.response.start).map_err(|e| come_apart(scene, e))?;
+        check_loose(scene, &self.response.start, 1.0)?;
         for (u, p) in self.response.start.iter_mut().zip(&field) {
             *u += p;
         }
@@ -273,8 +275,8 @@ impl StaticSolver {
         for spring in &self.touching.springs {
             spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.response.right);
         }
-        self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| scene.come_apart(e))?;
-        scene.check_loose(&self.response.slope, ahead)?;
+        self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| come_apart(scene, e))?;
+        check_loose(scene, &self.response.slope, ahead)?;
         for (u, p) in self.response.slope.iter_mut().zip(&field) {
             *u += p;
         }

@@ -38,7 +38,7 @@ use crate::scene::Scene;
 use crate::step::StepReport;
 use anderson::Anderson;
 use contact::{Pressed, Spring};
-use equilibrium::AppliedForces;
+use equilibrium::{AppliedForces, accept_equilibrium, forces_at_rest, no_equilibrium};
 use linear_system::LinearSystem;
 
 /// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
@@ -218,7 +218,7 @@ impl StaticSolver {
 
     /// Goes on from the state in which motion has left the scene.
     pub fn resume_from_motion(&mut self, scene: &mut Scene) {
-        self.applied = scene.forces_at_rest();
+        self.applied = forces_at_rest(scene);
         self.pace.growth = GROWTH[0];
         self.pace.trend.clear();
     }
@@ -277,7 +277,7 @@ impl StaticSolver {
                 }
                 let before = scene.solid.displacement.clone();
                 scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
-                return scene.accept_equilibrium(&self.response.start, time, &mut self.applied);
+                return accept_equilibrium(scene, &self.response.start, time, &mut self.applied);
             }
             if at_onset && held {
                 held = false;
@@ -293,7 +293,7 @@ impl StaticSolver {
                 Control::Path | Control::Opening(_) => self.pace.growth <= GROWTH[1] || growth.abs() == ONSET,
             };
             if smallest && monotone {
-                return Err(scene.no_equilibrium());
+                return Err(no_equilibrium(scene));
             }
             monotone = smallest;
             self.pace.growth = (0.5 * self.pace.growth).max(GROWTH[1]);

@@ -4,7 +4,8 @@ use fractum_math::Vec3;
 use fractum_sparse::SparseError;
 
 use super::LinearSolver;
-use super::contact::Spring;
+use super::contact::{Spring, springs_at_rest};
+use super::equilibrium::boundary_at;
 use super::linear_system::LinearSystem;
 use crate::scene::Scene;
 
@@ -29,7 +30,7 @@ impl Stiffness {
     /// [`SparseError::TooLarge`] if the factor does not fit.
     pub fn new(scene: &Scene) -> Result<Self, SparseError> {
         let held = scene.supports().held();
-        let springs = scene.springs_at_rest();
+        let springs = springs_at_rest(scene);
         let touching: Vec<[u32; 2]> = springs.iter().filter_map(Spring::pair).collect();
         let system = LinearSystem::new(&scene.solid, held, LinearSolver::Auto, ITERATIONS, TOLERANCE, &touching)?;
         Ok(Stiffness { system })
@@ -48,7 +49,7 @@ impl Stiffness {
     /// # Errors
     /// [`SparseError`] if the scene can move without resistance.
     pub fn prepare(&mut self, scene: &Scene) -> Result<(), SparseError> {
-        let springs = scene.springs_at_rest();
+        let springs = springs_at_rest(scene);
         self.system.prepare(scene, &scene.solid.cell_damage(), &springs)
     }
 
@@ -59,7 +60,7 @@ impl Stiffness {
     /// # Errors
     /// [`SparseError::Stalled`] if an iterative solution fails.
     pub fn first_period(&mut self, scene: &mut Scene, time: f64) -> Result<f64, SparseError> {
-        let there = scene.boundary_at(0.0, time);
+        let there = boundary_at(scene, 0.0, time);
         let solid = &scene.solid;
         let (reference, mass) = (&solid.reference, &solid.mass);
         let size = reference.iter().map(|p| p.norm()).fold(f64::MIN_POSITIVE, f64::max);
@@ -114,7 +115,7 @@ impl Scene {
         let (mut change, mut largest) = ([0.0f64; 2], [0.0f64; 2]);
         let mut last: Option<super::equilibrium::Boundary> = None;
         for sample in 0..=(end / step).ceil() as usize {
-            let now = self.boundary_at(0.0, (step * sample as f64).min(end));
+            let now = boundary_at(self, 0.0, (step * sample as f64).min(end));
             let far = |a: &[Vec3], b: &[Vec3]| a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
             let size = |a: &[Vec3]| a.iter().map(|a| a.norm()).fold(0.0, f64::max);
             largest[0] = largest[0].max(size(&now.displacement));

@@ -10,6 +10,7 @@ use crate::clock::Frequencies;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
+use crate::stable_step::{next_dt, update_contact_frequency, update_wall_frequency};
 
 /// Kinetic over elastic energy below which motion has died, with a small part of all energy put in beside the elastic one: a
 /// body in two holds none.
@@ -54,11 +55,11 @@ impl Scene {
     /// - `periods`: first periods for which it moves at least
     pub fn begin_motion(&mut self, damping: Option<LocalDamping>, periods: f64) -> DynamicPhase {
         let time = self.clock.time;
-        let period = self.period_as_it_is(time);
+        let period = period_as_it_is(self, time);
         let critical = 4.0 * std::f64::consts::PI / period;
         let damping = damping.unwrap_or(LocalDamping { local: 0.0, mass_rate: DAMPING * critical });
         self.settings.damping = damping;
-        self.move_from_rest(false);
+        move_from_rest(self, false);
         DynamicPhase {
             begin: time,
             period,
@@ -71,51 +72,17 @@ impl Scene {
 
     /// Lets motion begin at the present state, which is at rest, with the next step.
     pub fn start_from_rest(&mut self) {
-        self.move_from_rest(self.settings.time_step.element_bound);
-    }
-
-    fn move_from_rest(&mut self, element_bound: bool) {
-        // Tangential springs let go: none stores energy at rest. Constraints hold what they held.
-        let candidates = self.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
-        candidates.for_each(|c| (c.memory.slip, c.brought_back) = (Vec3::zeros(), Vec3::zeros()));
-        self.find_step(element_bound);
-        let clock = &mut self.clock;
-        (clock.dt_before, clock.dt_min) = (clock.dt_after, clock.dt_min.min(clock.dt_after));
-        clock.motion_since = clock.step;
+        move_from_rest(self, self.settings.time_step.element_bound);
     }
 
     /// Finds the time step anew, for the solids as they are and the settings of the scene.
     pub fn renew_step(&mut self) {
-        self.find_step(self.settings.time_step.element_bound);
-    }
-
-    fn find_step(&mut self, element_bound: bool) {
-        let stable = if element_bound { motion::stable_step_bound(&self.solid) } else { self.solid.stable_step() };
-        self.frequencies = Frequencies::of(stable, None);
-        self.debris.search(&self.solid);
-        self.update_wall_frequency();
-        self.update_contact_frequency(true, true);
-        self.clock.dt_after = self.next_dt(self.clock.time);
+        find_step(self, self.settings.time_step.element_bound);
     }
 
     /// Goes on with motion that a checkpoint interrupted.
     pub fn resume_motion(&mut self, interlude: &DynamicPhase) {
         self.settings.damping = interlude.damping;
-    }
-
-    fn period_as_it_is(&mut self, time: f64) -> f64 {
-        let found = Stiffness::new(self).and_then(|mut stiffness| {
-            stiffness.prepare(self)?;
-            stiffness.first_period(self, time)
-        });
-        found.ok().filter(|period| period.is_finite()).unwrap_or_else(|| {
-            let points = &self.solid.reference;
-            let low = points.iter().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
-            let high = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
-            let speed = |body| self.solid.body(body).elastic.p_wave_speed();
-            let slowest = (0..self.solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
-            CROSSINGS * (high - low).norm() / slowest
-        })
     }
 
     /// Advances the scene by a step with its ledger; ends the motion at the beginning of that step if it has died by then,
@@ -152,4 +119,38 @@ impl Scene {
         self.ledger[EnergyKind::Kinetic] = 0.0;
         Ok(true)
     }
+}
+
+fn move_from_rest(scene: &mut Scene, element_bound: bool) {
+    // Tangential springs let go: none stores energy at rest. Constraints hold what they held.
+    let candidates = scene.shape_contacts.iter_mut().flat_map(|ground| &mut ground.candidates);
+    candidates.for_each(|c| (c.memory.slip, c.brought_back) = (Vec3::zeros(), Vec3::zeros()));
+    find_step(scene, element_bound);
+    let clock = &mut scene.clock;
+    (clock.dt_before, clock.dt_min) = (clock.dt_after, clock.dt_min.min(clock.dt_after));
+    clock.motion_since = clock.step;
+}
+
+fn find_step(scene: &mut Scene, element_bound: bool) {
+    let stable = if element_bound { motion::stable_step_bound(&scene.solid) } else { scene.solid.stable_step() };
+    scene.frequencies = Frequencies::of(stable, None);
+    scene.debris.search(&scene.solid);
+    update_wall_frequency(scene);
+    update_contact_frequency(scene, true, true);
+    scene.clock.dt_after = next_dt(scene, scene.clock.time);
+}
+
+fn period_as_it_is(scene: &mut Scene, time: f64) -> f64 {
+    let found = Stiffness::new(scene).and_then(|mut stiffness| {
+        stiffness.prepare(scene)?;
+        stiffness.first_period(scene, time)
+    });
+    found.ok().filter(|period| period.is_finite()).unwrap_or_else(|| {
+        let points = &scene.solid.reference;
+        let low = points.iter().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
+        let high = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
+        let speed = |body| scene.solid.body(body).elastic.p_wave_speed();
+        let slowest = (0..scene.solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
+        CROSSINGS * (high - low).norm() / slowest
+    })
 }
