@@ -1,9 +1,9 @@
 //! The small algebra that every kernel of fractum shares.
 //!
-//! Vectors and matrices are nalgebra's; this crate adds what the mechanics needs on top: symmetric tensors in Voigt
-//! order xx yy zz xy yz zx with their principal values, ragged tables, connected parts, parallel sums whose result does
-//! not depend on the number of threads, the largest eigenvalue of an operator, the volume of a sphere, and the account of a
-//! step's work.
+//! Vectors and matrices are nalgebra's; vectors, symmetric tensors, elementary functions and the account of a step's work are
+//! those of [`fractum_kernels`], under their names here. This crate adds what needs memory or threads: ragged tables, connected
+//! parts, parallel sums whose result does not depend on the number of threads, the largest eigenvalue of an operator, and
+//! rotations and the volume of a sphere.
 //!
 //! ```
 //! use fractum_math::{Sym3, Vec3};
@@ -13,32 +13,19 @@
 //! ```
 
 mod connected;
-pub mod elementary;
 mod lanczos;
-mod lane;
-mod negative_part;
 mod ragged;
 mod reduce;
 mod rotation;
 mod sphere;
-mod sym3;
-mod widest;
-mod work;
+
+pub use fractum_kernels::{
+    FOUR, HalfSteps, Lane, Mat3, Rotation, Sym3, Vec3, Work, by_component, elementary, negative_parts, widest,
+};
 
 pub use connected::{Connected, connected, numbered_parts};
 pub use lanczos::largest_eigenvalue;
-pub use lane::{FOUR, Lane};
-pub use negative_part::{by_component, negative_parts};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};
 pub use sphere::sphere_volume;
-pub use sym3::Sym3;
-pub use work::{HalfSteps, Work};
-
-/// A vector in space (SI units of the quantity it holds).
-pub type Vec3 = nalgebra::Vector3<f64>;
-/// A 3×3 matrix.
-pub type Mat3 = nalgebra::Matrix3<f64>;
-/// A rotation as a unit quaternion.
-pub type Rotation = nalgebra::UnitQuaternion<f64>;

@@ -1,13 +1,12 @@
 //! Principal values and negative parts of symmetric tensors, four at a time.
 
-use crate::elementary::cosines_of_thirds;
+use crate::elementary::cos_of_third;
+use crate::sym3::{determinant, lode};
 use crate::{Lane, Sym3, widest};
-
-/// J₂ below which a tensor is isotropic.
-const ISOTROPIC: f64 = 1e-300;
 
 impl Sym3 {
     /// The negative part Σ min(λᵢ, 0) nᵢ ⊗ nᵢ, see [`negative_parts`].
+    #[inline]
     pub fn negative_part(self) -> Self {
         negative_parts(&[self, Sym3::ZERO, Sym3::ZERO, Sym3::ZERO])[0]
     }
@@ -31,7 +30,7 @@ fn negative_parts_by_lanes(tensors: &[Sym3; 4]) -> [Sym3; 4] {
     let determinant = determinant(full);
     // None, all, one alone; else two.
     let of = |test: fn(f64, f64, f64) -> bool| -> [bool; 4] {
-        std::array::from_fn(|k| test(trace.0[k], minors.0[k], determinant.0[k]))
+        core::array::from_fn(|k| test(trace.0[k], minors.0[k], determinant.0[k]))
     };
     let none = of(|trace, minors, determinant| trace >= 0.0 && minors >= 0.0 && determinant >= 0.0);
     let all = of(|trace, minors, determinant| trace <= 0.0 && minors >= 0.0 && determinant <= 0.0);
@@ -42,43 +41,24 @@ fn negative_parts_by_lanes(tensors: &[Sym3; 4]) -> [Sym3; 4] {
     let value = outer_value(lode(full), side);
     let projector = projectors([xx - value, yy - value, zz - value, xy, yz, zx]);
     // One negative value λ₃ gives λ₃ n ⊗ n, two of them A − λ₁ n ⊗ n.
-    let beyond = Lane(std::array::from_fn(|k| if one[k] { value.0[k].min(0.0) } else { value.0[k].max(0.0) }));
-    let definite: [bool; 4] = std::array::from_fn(|k| none[k] || all[k]);
+    let beyond = Lane(core::array::from_fn(|k| if one[k] { value.0[k].min(0.0) } else { value.0[k].max(0.0) }));
+    let definite: [bool; 4] = core::array::from_fn(|k| none[k] || all[k]);
     let weight = Lane::choose(definite, Lane::ZERO, Lane::ZERO - beyond * side);
     let kept = Lane::choose(all, plus, Lane::choose(none, Lane::ZERO, Lane::choose(one, Lane::ZERO, plus)));
-    let part: [Lane; 6] = std::array::from_fn(|c| full[c] * kept + projector[c] * weight);
-    std::array::from_fn(|k| Sym3(part.map(|component| component.0[k])))
+    let part: [Lane; 6] = core::array::from_fn(|c| full[c] * kept + projector[c] * weight);
+    core::array::from_fn(|k| Sym3(part.map(|component| component.0[k])))
 }
 
 /// The same component of all four tensors side by side.
 #[inline(always)]
 pub fn by_component(tensors: &[Sym3; 4]) -> [Lane; 6] {
-    std::array::from_fn(|c| Lane(std::array::from_fn(|k| tensors[k].0[c])))
-}
-
-#[inline(always)]
-fn determinant([xx, yy, zz, xy, yz, zx]: [Lane; 6]) -> Lane {
-    xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx)
-}
-
-/// Mean m, r and cos 3θ: the first principal value is m + r cos θ, the last m - r cos(π/3 - θ).
-#[inline(always)]
-fn lode([xx, yy, zz, xy, yz, zx]: [Lane; 6]) -> [Lane; 3] {
-    let mean = (xx + yy + zz) / Lane::splat(3.0);
-    let (a, b, c) = (xx - yy, yy - zz, zz - xx);
-    let j2 = (a * a + b * b + c * c) / Lane::splat(6.0) + xy * xy + yz * yz + zx * zx;
-    let j3 = determinant([xx - mean, yy - mean, zz - mean, xy, yz, zx]);
-    let radius = Lane::splat(2.0) * (j2 / Lane::splat(3.0)).sqrt();
-    let cos3 = Lane::splat(4.0) * j3 / (radius * radius * radius);
-    let isotropic = j2.0.map(|j2| j2 <= ISOTROPIC);
-    let cos3 = Lane(cos3.0.map(|c| c.clamp(-1.0, 1.0)));
-    [mean, Lane::choose(isotropic, Lane::ZERO, radius), Lane::choose(isotropic, Lane::ZERO, cos3)]
+    core::array::from_fn(|c| Lane(core::array::from_fn(|k| tensors[k].0[c])))
 }
 
 /// The first principal value where `side` is 1, the last where it is −1, with the bits of [`Sym3::principal_values`].
 #[inline(always)]
 fn outer_value([mean, radius, cos3]: [Lane; 3], side: Lane) -> Lane {
-    mean + side * (radius * cosines_of_thirds(side * cos3))
+    mean + side * (radius * cos_of_third(side * cos3))
 }
 
 /// n ⊗ n of the single principal value 0: the adjugate over its trace; zero beside a value so close that rounding leaves no direction.
@@ -89,7 +69,7 @@ fn projectors([a, b, c, xy, yz, zx]: [Lane; 6]) -> [Lane; 6] {
     let [xx, yy, zz, xy, yz, zx] = adjugate;
     let trace = xx + yy + zz;
     let square = xx * xx + yy * yy + zz * zz + Lane::splat(2.0) * (xy * xy + yz * yz + zx * zx);
-    let single = std::array::from_fn(|k| trace.0[k] > 0.0 && square.0[k] < 2.0 * trace.0[k] * trace.0[k]);
+    let single = core::array::from_fn(|k| trace.0[k] > 0.0 && square.0[k] < 2.0 * trace.0[k] * trace.0[k]);
     let inverse = Lane::choose(single, Lane::splat(1.0) / trace, Lane::ZERO);
     adjugate.map(|component| component * inverse)
 }
@@ -120,7 +100,7 @@ mod tests {
 
         #[test]
         fn four_tensors_do_not_mix_and_any_processor_gives_the_same_bits(c in prop::array::uniform24(-1f64..1.0)) {
-            let tensors: [Sym3; 4] = std::array::from_fn(|k| Sym3(std::array::from_fn(|i| c[6 * k + i])));
+            let tensors: [Sym3; 4] = core::array::from_fn(|k| Sym3(core::array::from_fn(|i| c[6 * k + i])));
             let bits = |parts: [Sym3; 4]| parts.map(|part| part.0.map(f64::to_bits));
             let together = bits(negative_parts(&tensors));
             prop_assert_eq!(together, bits(negative_parts_by_lanes(&tensors)));

@@ -1,4 +1,4 @@
-use std::ops::{Add, AddAssign};
+use core::ops::{Add, AddAssign};
 
 /// Energies that a step moves, or that are in motion and in springs at its instant [J].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,17 +19,20 @@ pub struct Work {
 
 impl Work {
     /// Energies of a contact: in its springs, taken by friction, taken by its dampers [J].
+    #[inline]
     pub fn contact(stored: f64, friction: f64, damping: f64) -> Self {
         Self { stored, friction, damping, ..Self::default() }
     }
 
     /// Work done from outside [J].
+    #[inline]
     pub fn external(external: f64) -> Self {
         Self { external, ..Self::default() }
     }
 }
 
 impl AddAssign for Work {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         self.kinetic += other.kinetic;
         self.stored += other.stored;
@@ -52,18 +55,21 @@ pub struct HalfSteps {
 
 impl HalfSteps {
     /// What motion and damping make of both halves: kinetic energy and what damping takes, before and after tⁿ.
+    #[inline]
     pub fn of_motion(&self) -> [f64; 4] {
         let HalfSteps { before, after } = self;
         [before.kinetic, before.damping, after.kinetic, after.damping]
     }
 
     /// Sets what [`HalfSteps::of_motion`] tells.
+    #[inline]
     pub fn set_motion(&mut self, numbers: [f64; 4]) {
         [self.before.kinetic, self.before.damping, self.after.kinetic, self.after.damping] = numbers;
     }
 }
 
 impl AddAssign for HalfSteps {
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         self.before += other.before;
         self.after += other.after;
@@ -73,6 +79,7 @@ impl AddAssign for HalfSteps {
 impl Add for HalfSteps {
     type Output = Self;
 
+    #[inline]
     fn add(mut self, other: Self) -> Self {
         self += other;
         self

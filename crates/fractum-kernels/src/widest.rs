@@ -9,7 +9,7 @@
 /// fn add_multiple(y: &mut [f64], x: &[f64], factor: f64) {
 ///     y.iter_mut().zip(x).for_each(|(y, x)| *y = x.mul_add(factor, *y));
 /// }
-/// fractum_math::widest! {
+/// fractum_kernels::widest! {
 ///     /// y ← y + factor x.
 ///     fn add_multiple_fast(y: &mut [f64], x: &[f64], factor: f64) = add_multiple;
 /// }
@@ -32,7 +32,7 @@ macro_rules! widest {
                 fn wide$(<$law: $bound $(, const $number: $kind)*>)?($($argument: $type),*) $(-> $result)? {
                     $body($($argument),*)
                 }
-                if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+                if $crate::has_wide_vectors() {
                     // SAFETY: the instruction sets were found on this machine.
                     #[allow(unsafe_code)]
                     return unsafe { wide$(::<$law $(, $number)*>)?($($argument),*) };
@@ -41,6 +41,15 @@ macro_rules! widest {
             $body($($argument),*)
         }
     };
+}
+
+/// Whether this processor has vectors of 256 bits and fused products (AVX2, FMA); unknown, hence not used, without the standard library.
+#[inline(always)]
+pub fn has_wide_vectors() -> bool {
+    #[cfg(all(feature = "std", target_arch = "x86_64"))]
+    return std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
+    #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+    return false;
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
-use crate::elementary::cos_of_third;
-use std::ops::{Add, AddAssign, Mul, Sub};
+use core::ops::{Add, AddAssign, Mul, Sub};
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Mat3, Vec3};
+use crate::elementary::cos_of_third;
+use crate::{Mat3, Number, Vec3};
+
+/// J₂ below which a tensor is isotropic.
+const ISOTROPIC: f64 = 1e-300;
 
 /// A symmetric tensor in Voigt order xx yy zz xy yz zx, with tensor (not engineering) shear components.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -14,11 +17,13 @@ impl Sym3 {
     pub const ZERO: Sym3 = Sym3([0.0; 6]);
 
     /// A tensor from its components xx yy zz xy yz zx.
+    #[inline]
     pub fn new(xx: f64, yy: f64, zz: f64, xy: f64, yz: f64, zx: f64) -> Self {
         Sym3([xx, yy, zz, xy, yz, zx])
     }
 
     /// `value` times the unit tensor.
+    #[inline]
     pub fn isotropic(value: f64) -> Self {
         Sym3([value, value, value, 0.0, 0.0, 0.0])
     }
@@ -30,6 +35,7 @@ impl Sym3 {
     }
 
     /// The tensor as a full matrix.
+    #[inline]
     pub fn to_matrix(self) -> Mat3 {
         let [xx, yy, zz, xy, yz, zx] = self.0;
         Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
@@ -51,17 +57,13 @@ impl Sym3 {
     /// Second invariant of the deviator, J₂ = ½ s : s.
     #[inline(always)]
     pub fn j2(self) -> f64 {
-        let [xx, yy, zz, xy, yz, zx] = self.0;
-        ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) / 6.0 + xy * xy + yz * yz + zx * zx
+        j2(self.0)
     }
 
     /// Third invariant of the deviator, J₃ = det s.
     #[inline(always)]
     pub fn j3(self) -> f64 {
-        let mean = self.trace() / 3.0;
-        let [xx, yy, zz, xy, yz, zx] = self.0;
-        let (a, b, c) = (xx - mean, yy - mean, zz - mean);
-        a * (b * c - yz * yz) - xy * (xy * c - yz * zx) + zx * (xy * yz - b * zx)
+        j3(self.0, self.trace() / 3.0)
     }
 
     /// Principal values in descending order, by the trigonometric solution of the characteristic equation.
@@ -69,7 +71,7 @@ impl Sym3 {
     /// Near a double value the error grows to about 1e-8 of the norm; [`Sym3::eigen`] is exact to round-off.
     #[inline(always)]
     pub fn principal_values(self) -> [f64; 3] {
-        let [mean, radius, cos3] = self.lode();
+        let [mean, radius, cos3] = lode(self.0);
         let (first, last) = (mean + radius * cos_of_third(cos3), mean - radius * cos_of_third(-cos3));
         [first, 3.0 * mean - first - last, last]
     }
@@ -77,19 +79,8 @@ impl Sym3 {
     /// The first of [`Sym3::principal_values`].
     #[inline(always)]
     pub fn first_principal_value(self) -> f64 {
-        let [mean, radius, cos3] = self.lode();
+        let [mean, radius, cos3] = lode(self.0);
         mean + radius * cos_of_third(cos3)
-    }
-
-    /// Mean m, r = 2 √(J₂/3) and cos 3θ: the first principal value is m + r cos θ, the last m - r cos(π/3 - θ).
-    #[inline(always)]
-    fn lode(self) -> [f64; 3] {
-        let (mean, j2) = (self.trace() / 3.0, self.j2());
-        let radius = 2.0 * (j2 / 3.0).sqrt();
-        let cos3 = (4.0 * self.j3() / (radius * radius * radius)).clamp(-1.0, 1.0);
-        // Chosen at the end rather than returned before, which would keep loops over tensors from becoming vectors.
-        let is_isotropic = j2 <= 1e-300;
-        [mean, if is_isotropic { 0.0 } else { radius }, if is_isotropic { 0.0 } else { cos3 }]
     }
 
     /// Principal values in descending order with their directions (columns), by cyclic Jacobi rotations.
@@ -119,17 +110,52 @@ impl Sym3 {
             }
         }
         let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| a[(j, j)].total_cmp(&a[(i, i)]));
+        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+            if a[(order[j], order[j])].total_cmp(&a[(order[i], order[i])]).is_gt() {
+                order.swap(i, j);
+            }
+        }
         let values = order.map(|i| a[(i, i)]);
         (values, Mat3::from_columns(&order.map(|i| q.column(i).into_owned())))
     }
+}
+
+/// J₂ of one tensor or of four side by side.
+#[inline(always)]
+fn j2<N: Number>([xx, yy, zz, xy, yz, zx]: [N; 6]) -> N {
+    let (a, b, c) = (xx - yy, yy - zz, zz - xx);
+    (a * a + b * b + c * c) / N::splat(6.0) + xy * xy + yz * yz + zx * zx
+}
+
+/// J₃ of tensors of this mean.
+#[inline(always)]
+fn j3<N: Number>([xx, yy, zz, xy, yz, zx]: [N; 6], mean: N) -> N {
+    determinant([xx - mean, yy - mean, zz - mean, xy, yz, zx])
+}
+
+#[inline(always)]
+pub(crate) fn determinant<N: Number>([xx, yy, zz, xy, yz, zx]: [N; 6]) -> N {
+    xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * zx) + zx * (xy * yz - yy * zx)
+}
+
+/// Mean m, r = 2 √(J₂/3) and cos 3θ: the first principal value is m + r cos θ, the last m - r cos(π/3 - θ).
+#[inline(always)]
+pub(crate) fn lode<N: Number>(tensor: [N; 6]) -> [N; 3] {
+    let [xx, yy, zz, ..] = tensor;
+    let (mean, j2) = ((xx + yy + zz) / N::splat(3.0), j2(tensor));
+    let radius = N::splat(2.0) * (j2 / N::splat(3.0)).sqrt();
+    let cos3 = N::splat(4.0) * j3(tensor, mean) / (radius * radius * radius);
+    let cos3 = cos3.map(|c| c.clamp(-1.0, 1.0));
+    // Chosen at the end rather than returned before, which would keep loops over tensors from becoming vectors.
+    let unless_isotropic = |value: f64, j2: f64| if j2 <= ISOTROPIC { 0.0 } else { value };
+    [mean, radius.with(j2, unless_isotropic), cos3.with(j2, unless_isotropic)]
 }
 
 impl Add for Sym3 {
     type Output = Sym3;
     #[inline]
     fn add(self, other: Sym3) -> Sym3 {
-        Sym3(std::array::from_fn(|i| self.0[i] + other.0[i]))
+        Sym3(core::array::from_fn(|i| self.0[i] + other.0[i]))
     }
 }
 
@@ -144,7 +170,7 @@ impl Sub for Sym3 {
     type Output = Sym3;
     #[inline]
     fn sub(self, other: Sym3) -> Sym3 {
-        Sym3(std::array::from_fn(|i| self.0[i] - other.0[i]))
+        Sym3(core::array::from_fn(|i| self.0[i] - other.0[i]))
     }
 }
 

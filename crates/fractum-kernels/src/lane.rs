@@ -1,6 +1,8 @@
-use std::ops::{Add, Div, Mul, Sub};
+use core::ops::{Add, Div, Mul, Sub};
 
 use crate::Vec3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// How many cells, edges or tensors go side by side: as many as a [`Lane`] has values.
 pub const FOUR: usize = 4;
@@ -35,13 +37,13 @@ impl Lane {
     /// `self + a · factor`, rounded once: the same bits whether the processor or the C library does it.
     #[inline(always)]
     pub fn plus(self, a: Lane, factor: f64) -> Lane {
-        Lane(std::array::from_fn(|i| a.0[i].mul_add(factor, self.0[i])))
+        Lane(core::array::from_fn(|i| a.0[i].mul_add(factor, self.0[i])))
     }
 
     /// `self + a · b`, rounded once.
     #[inline(always)]
     pub fn plus_product(self, a: Lane, b: Lane) -> Lane {
-        Lane(std::array::from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
+        Lane(core::array::from_fn(|i| a.0[i].mul_add(b.0[i], self.0[i])))
     }
 
     /// Square roots.
@@ -53,19 +55,19 @@ impl Lane {
     /// The smaller values; the other ones where one is no number.
     #[inline(always)]
     pub fn min(self, other: Lane) -> Lane {
-        Lane(std::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+        Lane(core::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
     }
 
     /// The larger values; the other ones where one is no number.
     #[inline(always)]
     pub fn max(self, other: Lane) -> Lane {
-        Lane(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        Lane(core::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
     }
 
     /// Values of `yes` where `condition` holds, of `no` elsewhere.
     #[inline(always)]
     pub fn choose(condition: [bool; 4], yes: Lane, no: Lane) -> Lane {
-        Lane(std::array::from_fn(|i| if condition[i] { yes.0[i] } else { no.0[i] }))
+        Lane(core::array::from_fn(|i| if condition[i] { yes.0[i] } else { no.0[i] }))
     }
 }
 
@@ -75,7 +77,7 @@ macro_rules! lane_by_lane {
             type Output = Lane;
             #[inline(always)]
             fn $method(self, other: Lane) -> Lane {
-                Lane(std::array::from_fn(|i| self.0[i] $operator other.0[i]))
+                Lane(core::array::from_fn(|i| self.0[i] $operator other.0[i]))
             }
         }
     )*};

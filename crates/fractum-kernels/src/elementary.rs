@@ -5,34 +5,40 @@
 //! one unit in the last place. `sqrt`, `abs`, `floor`, `mul_add` and the other exactly rounded operations need no entry
 //! here, nor does `powi`, which is a fixed sequence of products.
 
-use crate::Lane;
+use crate::Number;
 
 /// Arc cosine [rad], for −1 ≤ x ≤ 1; NaN outside.
+#[inline]
 pub fn acos(x: f64) -> f64 {
     libm::acos(x)
 }
 
 /// Arc sine [rad], for −1 ≤ x ≤ 1; NaN outside.
+#[inline]
 pub fn asin(x: f64) -> f64 {
     libm::asin(x)
 }
 
 /// Arc tangent [rad].
+#[inline]
 pub fn atan(x: f64) -> f64 {
     libm::atan(x)
 }
 
 /// Angle of the point (x, y) with the x axis [rad], in [−π, π].
+#[inline]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
 }
 
 /// Cube root.
+#[inline]
 pub fn cbrt(x: f64) -> f64 {
     libm::cbrt(x)
 }
 
 /// Cosine of an angle [rad].
+#[inline]
 pub fn cos(x: f64) -> f64 {
     libm::cos(x)
 }
@@ -51,26 +57,15 @@ const COS_OF_THIRD: [[f64; 4]; 5] = [
 /// It is analytic in √(1 + x) up to √(1 + x) = −√2: the Chebyshev series to t¹⁷ is exact to 5e-16, at a third of the cost of arc
 /// cosine and cosine.
 #[inline(always)]
-pub fn cos_of_third(x: f64) -> f64 {
-    let t = (2.0 + 2.0 * x).sqrt() - 1.0;
+pub fn cos_of_third<N: Number>(x: N) -> N {
+    let two = N::splat(2.0);
+    let t = (two + two * x).sqrt() - N::splat(1.0);
     let square = t * t;
     let fourth = square * square;
-    let rows = COS_OF_THIRD.into_iter().rev();
-    let [a, b, c, d] = rows.fold([0.0; 4], |sum, row| std::array::from_fn(|i| sum[i] * fourth + row[i]));
-    (a + b * t) + (c + d * t) * square
-}
-
-/// [`cos_of_third`] of four values, with the same bits.
-#[inline(always)]
-pub(crate) fn cosines_of_thirds(x: Lane) -> Lane {
-    let two = Lane::splat(2.0);
-    let t = (two + two * x).sqrt() - Lane::splat(1.0);
-    let square = t * t;
-    let fourth = square * square;
-    let mut sum = [Lane::ZERO; 4];
+    let mut sum = [N::splat(0.0); 4];
     for row in COS_OF_THIRD.iter().rev() {
         for (sum, coefficient) in sum.iter_mut().zip(row) {
-            *sum = *sum * fourth + Lane::splat(*coefficient);
+            *sum = *sum * fourth + N::splat(*coefficient);
         }
     }
     let [a, b, c, d] = sum;
@@ -78,6 +73,7 @@ pub(crate) fn cosines_of_thirds(x: Lane) -> Lane {
 }
 
 /// Hyperbolic cosine.
+#[inline]
 pub fn cosh(x: f64) -> f64 {
     libm::cosh(x)
 }
@@ -89,56 +85,67 @@ pub fn exp(x: f64) -> f64 {
 }
 
 /// eˣ − 1, accurate near zero.
+#[inline]
 pub fn exp_m1(x: f64) -> f64 {
     libm::expm1(x)
 }
 
 /// Gamma function Γ(x), for x > 0.
+#[inline]
 pub fn gamma(x: f64) -> f64 {
     libm::tgamma(x)
 }
 
 /// √(x² + y²) without overflow.
+#[inline]
 pub fn hypot(x: f64, y: f64) -> f64 {
     libm::hypot(x, y)
 }
 
 /// Natural logarithm, for x > 0; NaN below zero.
+#[inline]
 pub fn ln(x: f64) -> f64 {
     libm::log(x)
 }
 
 /// Decimal logarithm, for x > 0; NaN below zero.
+#[inline]
 pub fn log10(x: f64) -> f64 {
     libm::log10(x)
 }
 
 /// xʸ.
+#[inline]
 pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
 
 /// Sine of an angle [rad].
+#[inline]
 pub fn sin(x: f64) -> f64 {
     libm::sin(x)
 }
 
 /// Sine and cosine of an angle [rad].
+#[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
     libm::sincos(x)
 }
 
 /// Hyperbolic sine.
+#[inline]
 pub fn sinh(x: f64) -> f64 {
     libm::sinh(x)
 }
 
 /// Tangent of an angle [rad].
+#[inline]
 pub fn tan(x: f64) -> f64 {
     libm::tan(x)
 }
 
 /// Hyperbolic tangent.
+#[inline]
 pub fn tanh(x: f64) -> f64 {
     libm::tanh(x)
 }
