@@ -32,7 +32,6 @@ mod divided;
 mod element;
 mod error;
 pub mod fields;
-pub mod material;
 pub mod motion;
 pub mod neighbours;
 pub mod removal;
@@ -41,14 +40,12 @@ mod solid;
 mod state;
 
 pub use body::edges::BodyEdges;
-pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Plane, Region, Regularisation};
+pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Region, Regularisation};
 pub use cells::viscosity::Viscosity;
 pub use cracks::{
     CrackCell, CrackEdge, CrackFacet, CrackMouth, CrackNetwork, CrackNetworkState, CrackPlane, CrackSide, CrackSurface,
     Fracture, SeparatedElement, SeparatedFacet, Separation,
 };
-pub use damage::edge::EdgeDamage;
-pub use damage::restraint::Seen;
 pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
@@ -56,7 +53,10 @@ pub use divided::{
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
-pub use material::{Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Softening, Wave};
+pub use fractum_kernels::damage::{EdgeDamage, Seen};
+pub use fractum_kernels::material::{
+    Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Plane, Softening, Wave,
+};
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;

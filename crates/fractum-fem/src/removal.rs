@@ -1,5 +1,6 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
+use fractum_kernels::material::Hooke;
 use fractum_math::Sym3;
 
 use crate::body::Formulation;
@@ -9,7 +10,6 @@ use crate::damage::edge::EdgeField;
 use crate::damage::edges_in_step::{Advance, EdgesInStep};
 use crate::divided::ALONE;
 use crate::element::cut_modes;
-use crate::element::hooke::Hooke;
 use crate::motion::inverted::crushed_element;
 use crate::motion::phase_edges::refresh_phase;
 use crate::motion::subcycled_solid::own_step;
@@ -253,13 +253,13 @@ fn touched_edges(model: &BodyModel, elements: &[u32]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_math::Vec3;
     use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
     use proptest::prelude::*;
 
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
 
     /// A patch of triangles or tetrahedra under random displacements, with random damage; one edge in three is broken.

@@ -3,12 +3,10 @@
 //! The cells and laws are those of the explicit kernel. A trial leaves the history of the edges alone; it advances when
 //! [`Solid::update_internal_forces`] sees the displacements that were found.
 
+use fractum_kernels::damage::{EdgeDamage, Seen, Taken};
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
-use crate::damage::Taken;
-use crate::damage::edge::EdgeDamage;
-use crate::damage::restraint::{Restraint, Seen};
 use crate::motion::phase_damage::{phase_values, raise_phases, trial_phases};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
@@ -218,7 +216,7 @@ impl Solid {
                 return Seen { share: point.share, ..Seen::NOTHING };
             }
             let (q, history) = (criterion.equivalent_stress(stress), [point.strength, point.kappa, point.lateral]);
-            match Restraint::of(&model.body).seen(criterion, history, stress, q) {
+            match model.body.restraint().seen(criterion, history, stress, q) {
                 seen if seen.stress > point.kappa => seen,
                 seen => Seen { share: point.share, ..seen },
             }
@@ -240,7 +238,7 @@ impl Solid {
         Some((body, (a + b) * 0.5, ratio))
     }
 
-    fn criterion(&self, body: usize) -> &crate::material::Criterion {
+    fn criterion(&self, body: usize) -> &fractum_kernels::material::Criterion {
         let zone = self.bodies[body].body.damage.as_ref();
         &zone.expect("a damage point belongs to a body with damage").law.criterion
     }

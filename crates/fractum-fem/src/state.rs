@@ -1,10 +1,11 @@
 //! What changes in a solid during a run, for checkpoints.
 
+use fractum_kernels::damage::EdgeDamage;
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::Kinematics;
-use crate::damage::edge::{EdgeDamage, EdgeField};
+use crate::damage::edge::EdgeField;
 use crate::motion::phase_edges::restore_phase;
 use crate::removal::rebuild_cells_around;
 use crate::solid::Solid;

@@ -13,10 +13,12 @@
 
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 
+pub mod damage;
 pub mod elementary;
 #[cfg(not(feature = "std"))]
 mod exact;
 mod lane;
+pub mod material;
 mod negative_part;
 mod number;
 mod sym3;

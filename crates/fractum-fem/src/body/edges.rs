@@ -231,10 +231,10 @@ impl Sought {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::Elastic;
     use fractum_mesh::generate::{Jitter, structured_box};
 
     use super::*;
-    use crate::material::Elastic;
 
     #[test]
     fn edges_that_are_sought_are_those_of_the_tables() {

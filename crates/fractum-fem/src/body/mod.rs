@@ -2,9 +2,9 @@ pub(crate) mod edges;
 
 use std::sync::Arc;
 
+use fractum_kernels::damage::{Restraint, Softens};
+use fractum_kernels::material::{DamageLaw, Elastic, Hooke, Plane};
 use serde::{Deserialize, Serialize};
-
-use crate::material::{DamageLaw, Elastic};
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -51,15 +51,6 @@ pub enum Kinematics {
     Corotational,
     /// Small until a part of the body turns in motion, corotational from then on; see [`crate::Solid::let_turn`].
     Auto,
-}
-
-/// What a plane body assumes across its thickness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Plane {
-    /// No strain across the thickness.
-    Strain,
-    /// No stress across the thickness.
-    Stress,
 }
 
 /// Which edges of a body may be damaged.
@@ -150,6 +141,33 @@ impl Body {
             regularisation: None,
         };
         Body { damage: Some(zone), ..self }
+    }
+
+    /// What it assumes across its thickness; nothing in space.
+    fn across(&self) -> Option<Plane> {
+        (self.shape == ElementKind::T3).then_some(self.plane)
+    }
+
+    /// Its elastic law.
+    pub(crate) fn hooke(&self) -> Hooke {
+        Hooke::new(&self.elastic, self.across())
+    }
+
+    /// What neighbours that hold a crack sideways add to the stress that it sees.
+    pub(crate) fn restraint(&self) -> Restraint {
+        let is_spread = self.damage.as_ref().is_some_and(|zone| zone.regularisation.is_some());
+        Restraint::new(&self.elastic, self.across(), is_spread)
+    }
+
+    /// Modulus that turns the effective stress of an edge into the opening of its crack, E' [Pa].
+    pub(crate) fn opening_modulus(&self) -> f64 {
+        self.restraint().modulus
+    }
+
+    /// What its edges share, where it may be damaged.
+    pub(crate) fn softens(&self) -> Option<Softens> {
+        let zone = self.damage.as_ref()?;
+        Some(Softens::new(&zone.law, self.hooke(), self.restraint()))
     }
 
     /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.

@@ -1,5 +1,6 @@
 //! The force kernel: strain of each cell, stress by its law, forces on its nodes.
 
+use fractum_kernels::material::Hooke;
 use fractum_math::{FOUR, Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
@@ -7,7 +8,6 @@ use crate::cells::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
 use crate::cells::thermal_strain::ThermalStrain;
 use crate::cells::viscosity::{BodyViscosity, ViscousCells};
 use crate::element::four_turns::FourGradients;
-use crate::element::hooke::Hooke;
 use crate::element::polar::{corotational_strain, product, strain_and_turn};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
@@ -440,13 +440,13 @@ fn viscous_forces_by_cell<L: CellLaw>(
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::Elastic;
     use fractum_math::Vec3;
     use fractum_mesh::generate::{Jitter, structured_box};
 
     use super::*;
     use crate::body::{Body, ElementKind};
     use crate::cells::viscosity::Viscosity;
-    use crate::material::Elastic;
     use crate::solid::Solid;
 
     /// A strained and moving box with cells of many sizes.

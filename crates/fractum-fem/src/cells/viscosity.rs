@@ -2,11 +2,11 @@
 //! (1950) 232-237, with the linear term of Landshoff (1955): a pressure ρ l (b₁ c + b₂² l |ε̇_v|) |ε̇_v| in compression, which
 //! spreads a shock over a few elements.
 
+use fractum_kernels::material::Hooke;
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
 use crate::body::{Body, ElementKind, Formulation};
-use crate::element::hooke::Hooke;
 use crate::element::regular_edge;
 
 /// Viscous stress: β D ε̇, and a bulk viscosity for shocks.

@@ -202,11 +202,11 @@ pub fn lost_to_bands(solid: &Solid, body: usize) -> Option<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic, Plane};
     use fractum_mesh::generate::structured_rectangle;
 
     use super::*;
-    use crate::body::{Body, ElementKind, Plane, Regularisation};
-    use crate::material::{DamageLaw, Elastic};
+    use crate::body::{Body, ElementKind, Regularisation};
 
     fn at(x: f64, y: f64, z: f64) -> (Vec3, f64) {
         (Vec3::new(x, y, z), 1.0)

@@ -377,9 +377,10 @@ fn neighbours(solid: &Solid) -> Vec<[u32; 4]> {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::Elastic;
+
     use super::*;
     use crate::body::Body;
-    use crate::material::Elastic;
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     fn solid(shape: ElementKind) -> Solid {

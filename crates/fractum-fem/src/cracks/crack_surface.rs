@@ -125,9 +125,10 @@ fn behind(model: &BodyModel, around: &[u32], third: u32) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
+
     use super::*;
     use crate::body::Body;
-    use crate::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {

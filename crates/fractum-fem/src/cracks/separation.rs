@@ -112,9 +112,10 @@ pub fn separate_cracks(solid: &Solid, elements: &[SeparatedElement]) -> (Vec<u32
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
+
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     const SIDE: f64 = 0.2;

@@ -1,11 +1,12 @@
 //! The edges of a block of smoothed cells in a step: their strains, the growth of their damage, the stress that is left.
 
+use fractum_kernels::damage::EdgeDamage;
 use fractum_math::{FOUR, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
 use crate::cells::block::Cells;
 use crate::cells::kernel::{self, CellLaw};
-use crate::damage::edge::{EdgeDamage, EdgeField};
+use crate::damage::edge::EdgeField;
 
 /// The step that led to the present displacements.
 #[derive(Clone, Copy)]

@@ -3,14 +3,14 @@
 
 use std::sync::Arc;
 
+use fractum_kernels::damage::{Softens, Taken};
 use fractum_math::{Lane, Ragged, Sym3, widest};
 use rayon::prelude::*;
 
 use crate::body::ElementKind;
 use crate::cells::block::{BLOCK_NODES, Cells, Run};
 use crate::cells::kernel::{CellLaw, add_cell_forces, gradient_columns, small_strain, symmetric_columns};
-use crate::damage::Taken;
-use crate::damage::edge::{EdgeField, Softens};
+use crate::damage::edge::EdgeField;
 use crate::element::cut_modes;
 
 /// Damage state of a standard body.

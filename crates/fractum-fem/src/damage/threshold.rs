@@ -194,10 +194,10 @@ fn size_where_cracks_go(body: &Body, zone: &DamageZone, edges: &BodyEdges, volum
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::{Jitter, structured_rectangle};
 
     use super::*;
-    use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
 
     /// Length and element size of a plate of 40 x 10 cells of 10 mm, whose points are moved along x.

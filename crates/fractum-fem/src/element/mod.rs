@@ -1,7 +1,6 @@
 //! Constant-gradient simplices.
 
 pub(crate) mod four_turns;
-pub(crate) mod hooke;
 pub(crate) mod polar;
 pub(crate) mod reflection;
 

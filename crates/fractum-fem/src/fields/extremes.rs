@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use fractum_kernels::material::CriterionKind;
 use fractum_math::Sym3;
 use fractum_math::elementary::asin;
 use rayon::prelude::*;
@@ -9,7 +10,6 @@ use rayon::prelude::*;
 use crate::body::{DamageZone, Kinematics, Region};
 use crate::cells::kernel::strain;
 use crate::element::CARRIES;
-use crate::material::CriterionKind;
 use crate::motion::turning::turn;
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
@@ -138,13 +138,13 @@ fn norm(tensor: Sym3) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_math::Vec3;
     use fractum_math::elementary::{cos, sin};
     use fractum_mesh::generate::structured_box;
 
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::{DamageLaw, Elastic};
 
     fn cube(change: impl FnOnce(&mut Body)) -> Solid {
         let mesh = structured_box([2; 3], Vec3::repeat(1.0), None);

@@ -124,12 +124,12 @@ fn weights(block: &Block, model: &BodyModel, geometry: &Geometry<'_>) -> Vec<f64
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::Elastic;
     use fractum_math::Vec3;
     use fractum_mesh::generate::{Jitter, structured_box};
 
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::Elastic;
 
     const ALPHA: f64 = 1e-5;
 

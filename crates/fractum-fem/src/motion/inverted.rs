@@ -47,12 +47,12 @@ pub(crate) fn inverted_of(solid: &Solid, blocks: &[Block]) -> Option<InvertedEle
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_math::Vec3;
     use fractum_mesh::generate::structured_box;
 
     use super::*;
     use crate::body::{Body, ElementKind, Kinematics};
-    use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
 
     /// A box that is turned inside out, with this damage everywhere.

@@ -1,15 +1,14 @@
 //! The phase fields of a solid at work: in motion before the forces of a step, at rest for the trials of a solver.
 
+use fractum_kernels::damage::{ABOVE_ALL, Seen, Taken};
+use fractum_kernels::material::equivalent_stresses;
 use fractum_math::{FOUR, Lane, Sym3, Vec3, widest};
 use rayon::prelude::*;
 
 use crate::cells::block::Cells;
-use crate::damage::Taken;
-use crate::damage::edge::{ABOVE_ALL, EdgeField};
+use crate::damage::edge::EdgeField;
 use crate::damage::edges_in_step::Advance;
 use crate::damage::phase::{AT_LEAST, ActiveEdge, Drive, EdgeStep, PhaseField};
-use crate::damage::restraint::Seen;
-use crate::material::equivalent_stresses;
 use crate::motion::phase_edges::{activate, for_each_phase_field, wake};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
@@ -284,12 +283,12 @@ fn driven_four(solid: &Solid, body: usize, dt: f64, active: &mut [ActiveEdge], s
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic, Plane};
     use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
     use nalgebra::DMatrix;
 
     use super::*;
-    use crate::body::{Body, ElementKind, Plane, Regularisation};
-    use crate::material::{DamageLaw, Elastic};
+    use crate::body::{Body, ElementKind, Regularisation};
 
     fn law() -> DamageLaw {
         DamageLaw::rankine(3e6, 100.0)

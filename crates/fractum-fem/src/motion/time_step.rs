@@ -1,11 +1,11 @@
 //! The largest stable step of central differences, 2/ω_max.
 
+use fractum_kernels::material::Hooke;
 use fractum_math::{Mat3, Vec3, largest_eigenvalue, sum_chunks};
 use nalgebra::{Matrix6, SMatrix};
 use rayon::prelude::*;
 
 use crate::cells::cell::Geometry;
-use crate::element::hooke::Hooke;
 use crate::solid::Solid;
 use crate::solid::subcycling::forget_ahead;
 

@@ -61,11 +61,11 @@ fn shape_factor(solid: &Solid, index: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{Elastic, Plane};
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
     use super::*;
-    use crate::body::{Body, ElementKind, Plane};
-    use crate::material::Elastic;
+    use crate::body::{Body, ElementKind};
     use fractum_math::Vec3;
 
     fn solid(kind: ElementKind, plane: Plane, thickness: f64, scale: f64) -> Solid {

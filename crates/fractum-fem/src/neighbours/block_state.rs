@@ -1,9 +1,9 @@
 //! What ranks send each other of the cells of a block, where all of them have these.
 
+use fractum_kernels::damage::EdgeDamage;
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
-use crate::damage::edge::EdgeDamage;
 use crate::solid::evaluate::Block;
 
 /// What the other ranks need of a block whose cells all have.

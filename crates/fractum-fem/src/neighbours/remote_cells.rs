@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use fractum_kernels::damage::{EdgeDamage, Softens};
 use serde::{Deserialize, Serialize};
 
-use crate::damage::edge::{EdgeDamage, EdgeField, Softens};
+use crate::damage::edge::EdgeField;
 
 /// An edge that a rank sends to others.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
@@ -104,19 +105,18 @@ impl SentEdge {
 
 #[cfg(test)]
 mod tests {
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_math::Sym3;
 
     use super::*;
     use crate::body::{Body, ElementKind};
-    use crate::material::{DamageLaw, Elastic};
 
     #[test]
     fn edges_stand_in_the_order_of_their_cells_whenever_they_are_received() {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
         let body = Body::new("edge", ElementKind::T4, vec![[0, 1, 2, 3]], elastic);
         let body = body.smoothed().with_damage(DamageLaw::rankine(3e6, 100.0));
-        let softens = Softens::new(&body, body.damage.as_ref().unwrap());
-        let mut field = EdgeField::of_none(Arc::new(softens));
+        let mut field = EdgeField::of_none(Arc::new(body.softens().unwrap()));
         let mut received = RemoteCells::default();
         let edge = |cell: u32, damage: f64| {
             let history = EdgeDamage { damage, broken: damage > 0.9, ..EdgeDamage::intact(3e6) };

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use fractum_kernels::damage::Softens;
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, gather, gather_named};
 
@@ -12,7 +13,7 @@ use super::subdomain_mut;
 use crate::body::{Body, Kinematics};
 use crate::cells::block::NodeSlots;
 use crate::cells::cell::Geometry;
-use crate::damage::edge::{EdgeField, Softens};
+use crate::damage::edge::EdgeField;
 use crate::divided::{BlockOrder, BodyShare, Classes, GivenToNodes, RanksOfNodes, nodal_sums};
 use crate::error::SolidError;
 use crate::solid::body_model::Chosen;
@@ -143,7 +144,7 @@ fn with_others(
     let mut of_others = ranks.of_others(exchange, of_divided().map(|(at, block)| (*at, block.cells.nodes.as_slice())));
     let known: Vec<(usize, usize, usize)> =
         of_divided().map(|(index, block)| (*index, block.body, block.gradients)).collect();
-    let softens = |model: &BodyModel| model.body.damage.as_ref().map(|zone| Arc::new(Softens::new(&model.body, zone)));
+    let softens = |model: &BodyModel| model.body.softens().map(Arc::new);
     let softens: Vec<Option<Arc<Softens>>> = models.iter().map(softens).collect();
     let mut all: BTreeMap<usize, Block> = made.into_iter().collect();
     for (index, body, gradients) in gather(exchange, &known).into_iter().flatten() {

@@ -1,11 +1,12 @@
 //! What one of several ranks has of the state of a solid: checkpoints in parts, and the whole state a few values at a time.
 
+use fractum_kernels::damage::EdgeDamage;
 use fractum_math::{Sym3, Vec3};
 use fractum_parallel::gather;
 use serde::{Deserialize, Serialize};
 
 use super::subdomain;
-use crate::damage::edge::{EdgeDamage, EdgeField};
+use crate::damage::edge::EdgeField;
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
 use crate::state::body_state;

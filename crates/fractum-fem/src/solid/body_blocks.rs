@@ -2,18 +2,18 @@
 
 use std::sync::{Arc, OnceLock};
 
+use fractum_kernels::damage::Softens;
 use fractum_math::Vec3;
 
 use crate::body::edges::BodyEdges;
 use crate::body::{Body, Formulation};
 use crate::cells::cell::{Bundle, Class, Geometry};
-use crate::damage::edge::{EdgeField, Softens};
+use crate::damage::edge::EdgeField;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::{StandardCells, StandardDamage};
 use crate::damage::threshold::Threshold;
 use crate::divided::places::Places;
 use crate::divided::{BodyShare, Replication};
-use crate::element::hooke::Hooke;
 use crate::error::SolidError;
 use crate::solid::body_model::{BodyModel, Chosen};
 use crate::solid::evaluate::{Block, BlockLaw};
@@ -30,7 +30,7 @@ impl BodyModel {
         chosen: Chosen,
         first_block: usize,
     ) -> Result<(Self, Vec<Block>), SolidError> {
-        let hooke = Hooke::of(&body);
+        let hooke = body.hooke();
         let smoothed = body.formulation == Formulation::Smoothed;
         let geometry = Geometry { body: &body, nodes };
         let known = chosen.share.filter(|share| share.replication == Replication::Elements);
@@ -39,7 +39,7 @@ impl BodyModel {
             None => BodyEdges::tables(&body),
         });
         let edge_count = edges.as_ref().map_or(0, BodyEdges::len);
-        let softens = body.damage.as_ref().map(|zone| Arc::new(Softens::new(&body, zone)));
+        let softens = body.softens().map(Arc::new);
         let of_body = CellsOfBody { geometry, edges: edges.as_ref().filter(|_| smoothed), chosen };
         let bundles_of_share = chosen.share.map(|share| of_body.blocks_of(share));
         let own = bundles_of_share.as_ref().filter(|_| known.is_some()).map(|bundles| items_of(bundles));

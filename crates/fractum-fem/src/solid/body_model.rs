@@ -1,5 +1,6 @@
 use std::sync::OnceLock;
 
+use fractum_kernels::material::Hooke;
 use fractum_parallel::Exchange;
 
 use crate::body::Body;
@@ -9,7 +10,6 @@ use crate::damage::phase::PhaseField;
 use crate::damage::standard::StandardDamage;
 use crate::divided::BodyShare;
 use crate::divided::places::Places;
-use crate::element::hooke::Hooke;
 
 /// A body as it runs.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@ pub(crate) mod subcycling;
 
 use std::ops::Range;
 
+use fractum_kernels::material::{Wave, rayleigh_wave_speed};
 use fractum_math::{CHUNK, HalfSteps, Sym3, Vec3};
 use rayon::prelude::*;
 
@@ -16,7 +17,6 @@ use crate::cells::cell::Geometry;
 use crate::damage::edge::EdgeField;
 use crate::damage::threshold::characteristic_length;
 use crate::error::SolidError;
-use crate::material::{Wave, rayleigh_wave_speed};
 pub(crate) use crate::solid::body_model::BodyModel;
 use crate::solid::body_model::Chosen;
 use crate::solid::evaluate::Block;

@@ -16,16 +16,15 @@ mod rest;
 
 use std::f64::consts::PI;
 
+use fractum_kernels::damage::{Seen, Taken};
+use fractum_kernels::material::{Degradation, Softening};
 use fractum_math::{FOUR, Lane, widest};
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
 use crate::body::{Body, DamageZone, ElementKind, Formulation};
 use crate::cells::cell::Geometry;
-use crate::damage::Taken;
-use crate::damage::restraint::Seen;
 use crate::error::SolidError;
-use crate::material::{Degradation, Softening};
 use laplacian::Rows;
 
 /// Value from which on the neighbours of an edge are active.
@@ -468,11 +467,11 @@ pub(crate) struct Patch<'a> {
 mod tests {
     use std::collections::BTreeMap;
 
+    use fractum_kernels::material::{DamageLaw, Elastic};
     use fractum_mesh::generate::structured_box;
 
     use super::*;
     use crate::body::Regularisation;
-    use crate::material::{DamageLaw, Elastic};
     use crate::solid::Solid;
 
     #[test]

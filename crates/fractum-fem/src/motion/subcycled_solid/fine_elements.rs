@@ -5,7 +5,6 @@ use rayon::prelude::*;
 
 use crate::body::{Body, Formulation};
 use crate::cells::cell::Geometry;
-use crate::element::hooke::Hooke;
 use crate::motion::time_step::element_frequency;
 
 /// Most short steps in a long one.
@@ -20,7 +19,7 @@ const WORTH_IT: f64 = 0.8;
 /// must take the short step, (1 + (m - 1) f)/m.
 pub(crate) fn fine_elements(nodes: &[Vec3], bodies: &[Body]) -> Option<Vec<Vec<bool>>> {
     let of_body = |body: &Body| -> Vec<f64> {
-        let (geometry, hooke) = (Geometry { body, nodes }, Hooke::of(body));
+        let (geometry, hooke) = (Geometry { body, nodes }, body.hooke());
         (0..body.elements.len()).into_par_iter().map(|element| element_frequency(&geometry, &hooke, element)).collect()
     };
     let frequencies: Vec<Vec<f64>> = bodies.iter().map(of_body).collect();

@@ -1,17 +1,9 @@
 //! What neighbours that hold a crack sideways add to the stress that it sees.
 
-use fractum_math::Sym3;
-
-use crate::body::{Body, ElementKind};
-use crate::element::hooke::Hooke;
-use crate::material::{Criterion, CriterionKind};
-
-impl Body {
-    /// Modulus that turns the effective stress of an edge into the opening of its crack, E' [Pa].
-    pub(crate) fn opening_modulus(&self) -> f64 {
-        Restraint::of(self).modulus
-    }
-}
+use crate::Sym3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
+use crate::material::{Criterion, CriterionKind, Elastic, Hooke, Plane};
 
 /// What an edge sees in a step.
 #[derive(Clone, Copy, Debug)]
@@ -48,34 +40,37 @@ impl Seen {
 /// and the same strain may also be that of an element that is held in part. What exceeds f_t in x therefore counts by m^-½ (docs/theory/damage.md). The wide band of
 /// a phase field opens less askew: by m^-¼ in the plane, and by x itself in space.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Restraint {
+pub struct Restraint {
     /// ν'.
     factor: f64,
     /// ν̂.
     askew: f64,
     /// Whether a phase field spreads the crack, whose elements open less askew.
-    is_spread: bool,
+    pub is_spread: bool,
     /// E' [Pa].
-    pub(crate) modulus: f64,
+    pub modulus: f64,
     /// Ratio of the stress across the thickness to the sum of those in the plane; none in space.
     thickness: Option<f64>,
 }
 
 impl Restraint {
-    pub(crate) fn of(body: &Body) -> Self {
-        let (Hooke { lambda, mu, zz }, elastic) = (Hooke::of(body), &body.elastic);
-        let is_spread = body.damage.as_ref().is_some_and(|zone| zone.regularisation.is_some());
-        match body.shape {
-            ElementKind::T4 => Restraint {
+    /// The restraint in a body in space, or in a plane one.
+    ///
+    /// - `is_spread`: whether a phase field spreads the crack
+    pub fn new(elastic: &Elastic, plane: Option<Plane>, is_spread: bool) -> Self {
+        let Hooke { lambda, mu, zz } = Hooke::new(elastic, plane);
+        let askew = lambda / (lambda + 2.0 * mu);
+        match plane {
+            None => Restraint {
                 factor: elastic.poisson_ratio,
-                askew: lambda / (lambda + 2.0 * mu),
+                askew,
                 is_spread,
                 modulus: elastic.young_modulus,
                 thickness: None,
             },
-            ElementKind::T3 => Restraint {
-                factor: lambda / (lambda + 2.0 * mu),
-                askew: lambda / (lambda + 2.0 * mu),
+            Some(_) => Restraint {
+                factor: askew,
+                askew,
                 is_spread,
                 modulus: 4.0 * mu * (lambda + mu) / (lambda + 2.0 * mu),
                 thickness: Some(zz * elastic.poisson_ratio),
@@ -87,13 +82,7 @@ impl Restraint {
     ///
     /// - `[strength, kappa, at_onset]`: strength, largest equivalent stress so far, and sum of the lateral principal stresses at the onset of damage [Pa]
     #[inline(always)]
-    pub(crate) fn seen(
-        &self,
-        criterion: &Criterion,
-        [strength, kappa, at_onset]: [f64; 3],
-        stress: Sym3,
-        q: f64,
-    ) -> Seen {
+    pub fn seen(&self, criterion: &Criterion, [strength, kappa, at_onset]: [f64; 3], stress: Sym3, q: f64) -> Seen {
         if q <= kappa {
             return Seen { stress: q, ..Seen::NOTHING };
         }
@@ -174,21 +163,17 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::body::Plane;
-    use crate::damage::edge::{EdgeDamage, Softens};
-    use crate::material::{DamageLaw, Elastic, KINDS, Softening};
+    use crate::damage::{EdgeDamage, Softens};
+    use crate::material::{DamageLaw, KINDS, Softening};
 
     const STRENGTH: f64 = 3e6;
     const LENGTH: f64 = 0.002;
-    fn softens(shape: ElementKind, plane: Plane, nu: f64, kind: CriterionKind, softening: Softening) -> (Softens, f64) {
+    fn softens(plane: Option<Plane>, nu: f64, kind: CriterionKind, softening: Softening) -> (Softens, f64) {
         let criterion = Criterion::new(kind, 0.6, 10.0, nu);
         let law = DamageLaw { criterion, softening, ..DamageLaw::rankine(STRENGTH, 100.0) };
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: nu };
-        let mut body = Body::new("bar", shape, vec![[0, 1, 2, 3]], elastic).with_damage(law);
-        body.plane = plane;
-        let softens = Softens::new(&body, body.damage.as_ref().unwrap());
-        let modulus = softens.restraint.modulus;
-        (softens, modulus)
+        let restraint = Restraint::new(&elastic, plane, false);
+        (Softens::new(&law, Hooke::new(&elastic, plane), restraint), restraint.modulus)
     }
 
     fn see(softens: &Softens, edge: &EdgeDamage, strain: Sym3) -> (Seen, Sym3) {
@@ -204,8 +189,8 @@ mod tests {
         ) {
             for &kind in KINDS {
                 // Mazars' criterion has strains in space; the others need the stress alone.
-                let shape = if in_plane { ElementKind::T3 } else { ElementKind::T4 };
-                let (softens, modulus) = softens(shape, Plane::Stress, nu, kind, Softening::Exponential);
+                let plane = in_plane.then_some(Plane::Stress);
+                let (softens, modulus) = softens(plane, nu, kind, Softening::Exponential);
                 let thick = |side: f64| if in_plane { 0.0 } else { side };
                 let onset = STRENGTH / modulus;
                 let mut edge = EdgeDamage::intact(STRENGTH);
@@ -235,7 +220,7 @@ mod tests {
             strain in prop::array::uniform6(-1e-3f64..1e-3),
             lateral in -1e7f64..1e7,
         ) {
-            let (softens, _) = softens(ElementKind::T4, Plane::Strain, nu, KINDS[kind], Softening::Linear);
+            let (softens, _) = softens(None, nu, KINDS[kind], Softening::Linear);
             let edge = EdgeDamage { lateral, ..EdgeDamage::intact(STRENGTH) };
             let (seen, stress) = see(&softens, &edge, Sym3(strain));
             let q = softens.criterion.equivalent_stress(stress);

@@ -1,5 +1,8 @@
 //! Speeds of elastic waves.
 
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
+
 /// Elastic waves of an isotropic body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wave {

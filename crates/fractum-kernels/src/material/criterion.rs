@@ -1,6 +1,9 @@
-use fractum_math::elementary::{asin, cos, sin};
-use fractum_math::{Lane, Sym3, by_component, widest};
 use serde::{Deserialize, Serialize};
+
+use crate::elementary::{asin, cos, sin};
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
+use crate::{Lane, Sym3, by_component, widest};
 
 /// The equivalent stress of a criterion, scaled so that uniaxial tension σ gives q = σ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -117,6 +120,7 @@ impl Criterion {
     }
 
     /// Which criterion this is.
+    #[inline]
     pub fn kind(&self) -> CriterionKind {
         self.kind
     }
@@ -135,7 +139,7 @@ impl Criterion {
     /// The threshold less the stress has positive leading minors, beyond the rounding of these and the 1e-8 of the norm by which closed forms of principal
     /// values miss.
     #[inline(always)]
-    pub(crate) fn is_below_by_minors(&self, stress: Sym3, threshold: f64) -> bool {
+    pub fn is_below_by_minors(&self, stress: Sym3, threshold: f64) -> bool {
         let [xx, yy, zz, xy, yz, zx] = stress.0;
         let norm = threshold + stress.0.iter().map(|c| c.abs()).sum::<f64>();
         let least = threshold - 1e-7 * norm;
@@ -147,6 +151,7 @@ impl Criterion {
     }
 
     /// The sharper test, for stresses that are large but mostly compressive.
+    #[inline]
     fn below_by_j2(&self, stress: Sym3, square: f64, threshold: f64) -> bool {
         let trace = stress.trace();
         // The slack covers the cancellation between the two terms of J₂.
@@ -200,7 +205,7 @@ impl Criterion {
 
 widest! {
     /// Equivalent stresses of four effective stresses, with the bits of [`Criterion::equivalent_stress`]; zero where one surely stays below its threshold.
-    pub(crate) fn equivalent_stresses(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4]
+    pub fn equivalent_stresses(criterion: &Criterion, stresses: &[Sym3; 4], threshold: &Lane) -> [f64; 4]
         = equivalent_stresses_by_lanes;
 }
 
@@ -228,7 +233,7 @@ fn equivalent_stresses_by_lanes(criterion: &Criterion, stresses: &[Sym3; 4], thr
             for k in 0..4 {
                 [first[k], _, last[k]] = of(k).principal_values();
             }
-            q = std::array::from_fn(|k| criterion.of_outer_values(first[k], last[k]));
+            q = core::array::from_fn(|k| criterion.of_outer_values(first[k], last[k]));
         }
         _ => q = stresses.map(|stress| criterion.equivalent_stress(stress)),
     }

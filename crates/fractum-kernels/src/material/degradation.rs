@@ -1,4 +1,6 @@
-use fractum_math::Lane;
+use crate::Lane;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 use super::Softening;
 
@@ -29,7 +31,7 @@ impl Degradation {
             Softening::Bilinear { stress, opening } => ((1.0 - stress) / opening, Some((2.0 - opening) / stress)),
         };
         let p = if end.is_some() { 2.0 } else { 2.5 };
-        let a2 = 2.0 * fractum_math::elementary::cbrt(4.0 * slope * slope) - (p + 0.5);
+        let a2 = 2.0 * crate::elementary::cbrt(4.0 * slope * slope) - (p + 0.5);
         let a3 = end.map_or(0.0, |end| 0.125 * end * end - (1.0 + a2));
         Degradation { endless: end.is_none(), a2, a3 }
     }

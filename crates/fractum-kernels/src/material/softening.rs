@@ -1,5 +1,6 @@
-use fractum_math::elementary::exp;
 use serde::{Deserialize, Serialize};
+
+use crate::elementary::exp;
 
 /// Shape of the stress-opening curve of a cohesive crack; all enclose the fracture energy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,6 +25,7 @@ impl Softening {
     /// Residual stress ratio χ = σ/f_t at the largest equivalent stress `kappa` ≥ f_t reached so far.
     ///
     /// - `kappa`, `strength` f_t [Pa]; `length` l [m]; `young_modulus` [Pa]; `fracture_energy` [J/m²]
+    #[inline]
     pub fn residual_ratio(
         &self,
         kappa: f64,
@@ -48,6 +50,7 @@ impl Softening {
     }
 
     /// Characteristic length above which the curve would snap back [m].
+    #[inline]
     pub fn largest_length(&self, young_modulus: f64, strength: f64, fracture_energy: f64) -> f64 {
         let unit = young_modulus * fracture_energy / (strength * strength);
         match *self {
@@ -60,6 +63,7 @@ impl Softening {
     }
 
     /// Opening at zero stress, in multiples of G_f/f_t, such that the area is G_f.
+    #[inline]
     fn bilinear_end(stress: f64, opening: f64) -> f64 {
         (2.0 - opening) / stress
     }

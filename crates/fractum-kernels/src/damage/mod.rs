@@ -1,0 +1,9 @@
+//! Damage of an edge: what it sees, how its history advances, the stress that is left, and the energy that a step takes.
+
+mod edge;
+mod restraint;
+mod taken;
+
+pub use edge::{ABOVE_ALL, EdgeDamage, Softens};
+pub use restraint::{Restraint, Seen};
+pub use taken::Taken;
