@@ -1,20 +1,12 @@
+use fractum_kernels::bond::BadLaw;
 use thiserror::Error;
 
 /// Why a discrete body could not be built or solved.
 #[derive(Debug, Error, Clone, PartialEq)]
 pub enum DemError {
-    /// Numbers that make no beam.
-    #[error(
-        "a beam of Young's modulus {young_modulus} Pa, Poisson's ratio {poisson_ratio} and radius {radius} m; expected positive modulus and radius, and Poisson's ratio between -1 and 0.5"
-    )]
-    BadSection {
-        /// Young's modulus [Pa].
-        young_modulus: f64,
-        /// Poisson's ratio.
-        poisson_ratio: f64,
-        /// Radius [m].
-        radius: f64,
-    },
+    /// Numbers that make no bond.
+    #[error(transparent)]
+    BadLaw(#[from] BadLaw),
     /// A bond that names a missing particle, or joins a particle with itself or with one at the same place.
     #[error("bond {bond} joins particles {first} and {second} of {count}: {reason}")]
     BadBond {

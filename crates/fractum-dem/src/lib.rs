@@ -6,7 +6,7 @@
 //! [`stress`] and [`strain`] turn its state into macroscopic fields. What it leaves out: contact with other bodies and loads,
 //! which a scene adds; packing and calibration, which make the particles and the numbers of the law.
 //!
-//! A new law of bonds is a file in `bond/law` and a line in `bond/kinds.rs`; a new criterion is a file in
+//! A new law of bonds is a file in `fractum-kernels/src/bond` and a line in `bond/kinds.rs`; a new criterion is a file in
 //! `fracture/criterion` and a line in its `mod.rs`.
 //!
 //! A pair of particles in motion, its bond stretched by one per cent:
@@ -55,13 +55,13 @@ mod bond;
 mod cells;
 mod error;
 mod fracture;
-pub mod lanes;
 mod measure;
 mod particles;
 mod statics;
 
 pub use bond::*;
 pub use error::DemError;
+pub use fractum_kernels::lanes;
 pub use fracture::{
     Break, Crack, CrackFaces, FaceWork, FailureSearch, FailureSite, Fracture, FractureCriterion, FractureState,
     LoadedBonds, Occasion, criterion,

@@ -13,11 +13,13 @@
 
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 
+pub mod bond;
 pub mod damage;
 pub mod elementary;
 #[cfg(not(feature = "std"))]
 mod exact;
 mod lane;
+pub mod lanes;
 pub mod material;
 mod negative_part;
 mod number;

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
+use fractum_kernels::bond::BondLaw;
 use fractum_parallel::gather;
 use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, VIRIALS, sum_bonds};
-use super::law::BondLaw;
 use super::network::{BLOCK, BondNetwork};
 use super::subdomain::BondSubdomain;
 use crate::particles::{ParticleSubdomain, Particles};

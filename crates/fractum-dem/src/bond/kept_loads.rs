@@ -1,12 +1,12 @@
 //! What the bonds of a network bore when their forces were found.
 
+use fractum_kernels::bond::BondLaw;
+use fractum_kernels::lanes::WIDTH;
 use rayon::prelude::*;
 
 use super::block::{Block, LOADS};
-use super::law::BondLaw;
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
-use crate::lanes::WIDTH;
 use crate::particles::Particles;
 
 impl<L: BondLaw> BondNetwork<L> {

@@ -2,12 +2,11 @@
 
 use std::ops::Range;
 
+use fractum_kernels::bond::{BeamSection, BondEnergy, BondForces, BondLaw, LocalBond, Separation};
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::graph::BondGraph;
-use super::law::{BeamSection, BondEnergy, BondForces, BondLaw};
-use super::law::{LocalBond, Separation};
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
 use crate::DemError;

@@ -1,7 +1,7 @@
 //! What bonds bear, for criteria that look at every one.
 
-use super::law::ForceLanes;
-use crate::lanes::{Lanes, Vector, WIDTH, dot, scale, sub};
+use fractum_kernels::bond::ForceLanes;
+use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot, scale, sub};
 
 /// Sizes of what a bond bears.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -2,11 +2,11 @@
 
 use std::cmp::Ordering;
 
+use fractum_kernels::bond::MeanElasticity;
 use fractum_math::{Lane, Mat3, Sym3, Vec3, sphere_volume, widest};
 use rayon::prelude::*;
 
 use super::graph::BondGraph;
-use super::law::MeanElasticity;
 use super::space_cells::SpaceCells;
 use crate::DemError;
 use crate::particles::Particles;

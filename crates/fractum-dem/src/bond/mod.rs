@@ -1,22 +1,29 @@
-//! Bonds that join particles: their laws, the network that computes them, the graph of those that hold.
+//! Bonds that join particles: the network that computes them, the graph of those that hold.
 
 mod block;
 mod distributed;
 mod graph;
 mod kept_loads;
 mod kinds;
-mod law;
 mod loads;
 mod mean_strain;
 mod network;
 mod nonlocal;
 mod separating;
+#[cfg(test)]
+mod softening_spring;
 mod space_cells;
 mod subdomain;
+#[cfg(test)]
+mod tests;
 
+pub use fractum_kernels::bond::{
+    BadLaw, BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, Crushing,
+    DeviatingForces, EnergyLanes, ForceLanes, Interface, InterfaceFailure, InterfaceMemory, LocalBond, MeanElasticity,
+    RecentStrains, Separation, Turn, cohesive_beam, cohesive_beam_energy,
+};
 pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};
 pub use kinds::{AnyBondLaw, BondMemory, Bonds};
-pub use law::*;
 pub use loads::{LoadLanes, LoadSizes};
 pub use network::BondNetwork;

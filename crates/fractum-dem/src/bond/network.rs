@@ -1,5 +1,7 @@
 use std::ops::Add;
 
+use fractum_kernels::bond::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
+use fractum_kernels::lanes::WIDTH;
 use fractum_math::{Sym3, Vec3};
 use fractum_parallel::gather_named;
 use nalgebra::Matrix6;
@@ -7,11 +9,9 @@ use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
 use super::graph::{BondGraph, check_pairs};
-use super::law::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use super::mean_strain::{MeanStrain, Separating};
 use super::subdomain::BondSubdomain;
 use crate::DemError;
-use crate::lanes::WIDTH;
 use crate::particles::{Particles, SHARED};
 
 /// Particles whose bonds form one block of parallel work.

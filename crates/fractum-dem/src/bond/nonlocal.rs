@@ -1,11 +1,11 @@
 //! Networks whose bonds resist what their particles do beside their mean strain.
 
+use fractum_kernels::bond::{BondForces, BondLaw};
 use fractum_math::{Vec3, largest_eigenvalue};
 use nalgebra::Vector6;
 use rayon::prelude::*;
 
 use super::block::sum_deviations;
-use super::law::{BondForces, BondLaw};
 use super::network::{BLOCK, BondNetwork};
 use crate::particles::{Particles, turned};
 

@@ -1,11 +1,11 @@
 //! Bonds that separate beside the mean strain of their particles, and the work that they do last.
 
+use fractum_kernels::bond::{BondForces, BondLaw};
+use fractum_kernels::lanes::Lanes;
 use fractum_math::{Sym3, Vec3};
 
-use super::law::{BondForces, BondLaw};
 use super::mean_strain::{BondChange, MeanStrain, Separating};
 use super::network::BondNetwork;
-use crate::lanes::Lanes;
 use crate::particles::Particles;
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -104,7 +104,7 @@ impl<L: BondLaw> BondNetwork<L> {
             let released = before - self.energy_about(about, bonds, particles);
             self.put_memory(bond, self.law.with_dissipated(memory, released, self.length[bond], &own));
             let [block, group, lane] = self.index[bond];
-            self.blocks[block as usize].separated.push(group * crate::lanes::WIDTH as u32 + lane);
+            self.blocks[block as usize].separated.push(group * fractum_kernels::lanes::WIDTH as u32 + lane);
         }
     }
 

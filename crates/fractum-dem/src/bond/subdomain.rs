@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use fractum_kernels::bond::BondLaw;
 use fractum_parallel::{Exchange, Exchanged, rank_of};
 
 use super::block::Block;
-use super::law::BondLaw;
 use crate::particles::{ParticleSubdomain, SHARED};
 
 /// The share of a rank.

@@ -1,10 +1,10 @@
 //! The motion of a block of particles, four side by side.
 
+use fractum_kernels::lanes::{Lanes, Vector, add, cross, dot, scale, sub};
 use fractum_math::elementary::{cos, sin};
 use fractum_math::{HalfSteps, Rotation, Vec3, widest};
 
 use super::step::{ParticleDamping, TimeStep};
-use crate::lanes::{Lanes, Vector, add, cross, dot, scale, sub};
 
 /// Particles side by side.
 const W: usize = 4;

@@ -340,8 +340,11 @@ pub(crate) fn clear(f: &mut Dof6, fixed: u8) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use fractum_kernels::bond::{BondForces, BondedPair, cohesive_beam};
+    use fractum_math::Rotation;
     use proptest::prelude::*;
+
+    use super::*;
 
     /// The 12×12 stiffness of a beam along x (Przemieniecki, *Theory of Matrix Structural Analysis*, 1968, ch. 5).
     fn textbook(section: &BeamSection, l: f64) -> nalgebra_matrix::Matrix12 {
@@ -472,5 +475,39 @@ mod tests {
         assert!(matches!(Lattice::new(&position, &[[0, 2]], lattice.section(), 0.2), Err(DemError::BadBond { .. })));
         assert!(matches!(Lattice::new(&position, &[[1, 1]], lattice.section(), 0.2), Err(DemError::BadBond { .. })));
         assert!(BeamSection::new(f64::NAN, 1.0).is_err() && BeamSection::new(1.0, -1.0).is_err());
+    }
+
+    #[test]
+    fn small_motion_of_a_bond_has_the_stiffness_of_the_lattice() {
+        let (axis, section) = (
+            Vec3::new(2.8, 0.8, -0.4).normalize(),
+            BeamSection { young_modulus: 2.0, poisson_ratio: 0.3, radius: 0.6 },
+        );
+        let position = [Vec3::zeros(), axis * 1.2];
+        let start = BondedPair { position, rotation: [Rotation::identity(); 2], axis, length: 1.2 };
+        let lattice = Lattice::new(&position, &[[0, 1]], section, 0.5).unwrap();
+        let h = 1e-7;
+        for dof in 0..12 {
+            let mut state = [[0.0; 6]; 2];
+            state[dof / 6][dof % 6] = h;
+            let shift = |e: usize, o: usize| Vec3::new(state[e][o], state[e][o + 1], state[e][o + 2]);
+            let moved = BondedPair {
+                position: [start.position[0] + shift(0, 0), start.position[1] + shift(1, 0)],
+                rotation: [Rotation::from_scaled_axis(shift(0, 3)), Rotation::from_scaled_axis(shift(1, 3))],
+                ..start
+            };
+            let BondForces { force, moment } = cohesive_beam(&moved, &section);
+            let expected = lattice.internal(&state);
+            for a in 0..3 {
+                for (found, row) in [
+                    (-force[a], expected[0][a]),
+                    (force[a], expected[1][a]),
+                    (moment[0][a], expected[0][a + 3]),
+                    (moment[1][a], expected[1][a + 3]),
+                ] {
+                    assert!((found + row).abs() < 1e-6 * h * section.axial(), "dof {dof} axis {a}: {found} {row}");
+                }
+            }
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! Interfaces that resist what their particles do beside their mean strain.
 
-use fractum_math::Sym3;
-
 use super::{Interface, InterfaceMemory, Kinematics, LocalBond, RecentStrains, Separation};
-use crate::bond::law::{BondForces, BondLanes, BondedPair, DeviatingForces, EnergyLanes, ForceLanes};
+use crate::Sym3;
+use crate::bond::{BondForces, BondLanes, BondedPair, DeviatingForces, EnergyLanes, ForceLanes};
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 
 /// Strains of `W` interfaces in the axes of the undeformed body: the mean of their particles, and what they have beside it.

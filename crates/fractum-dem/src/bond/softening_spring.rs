@@ -1,8 +1,7 @@
 //! A toy law with memory, for tests: a spring along the bond that softens in tension.
 
-use super::{BondLanes, BondLaw, BondStiffness, EnergyLanes, ForceLanes};
-use crate::DemError;
-use crate::lanes::{Lanes, dot, scale};
+use fractum_kernels::bond::{BadLaw, BondLanes, BondLaw, BondStiffness, EnergyLanes, ForceLanes};
+use fractum_kernels::lanes::{Lanes, dot, scale};
 
 /// F = k δ up to δ₀, then on a line to zero at δ₁; unloading goes to the origin, and compression is elastic.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +31,9 @@ impl BondLaw for SofteningSpring {
     type Memory = f64;
     type Recent<const W: usize> = ();
 
-    fn check(&self) -> Result<(), DemError> {
+    fn check(&self) -> Result<(), BadLaw> {
         let fine = self.stiffness > 0.0 && self.onset > 0.0 && self.end > self.onset;
-        let bad = DemError::BadCriterion { what: "softening", value: self.end, expected: "an end beyond the onset" };
+        let bad = BadLaw::Number { what: "softening", value: self.end, expected: "an end beyond the onset" };
         if fine { Ok(()) } else { Err(bad) }
     }
 

@@ -3,6 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::LocalBond;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// When an interface fails under tension and shear together.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -127,7 +129,7 @@ fn times(a: [f64; 3], factor: f64) -> [f64; 3] {
 }
 
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| a[k] - b[k])
+    core::array::from_fn(|k| a[k] - b[k])
 }
 
 /// Damage at a load `ratio` times the strength, if the force falls on a line to zero at `end` times the elastic limit.
@@ -220,7 +222,7 @@ impl LocalBond {
         let (old, new) = (times(slip, before.damage[1]), times(new_slip, failed));
         let across = times(minus(shear, new), modulus);
         // Work by the trapezoid of the stresses less what is stored: that of the slip, then that along the normal.
-        let (last, sum) = (before.last[0], std::array::from_fn(|k| shear[k] + from[k]));
+        let (last, sum) = (before.last[0], core::array::from_fn(|k| shear[k] + from[k]));
         memory.dissipated += 0.5 * modulus * (dot(minus(new, old), sum) - dot(new, new_slip) + dot(old, slip));
         if memory.crushed != before.crushed || memory.damage[0] != before.damage[0] {
             let [old_stress, old_energy] = self.normal(last, &before);

@@ -1,21 +1,20 @@
 //! Laws of bonds, each in its file, behind one trait.
 
+mod bad_law;
 mod cohesive_beam;
 mod local;
-#[cfg(test)]
-mod softening_spring;
 
+pub use bad_law::BadLaw;
 pub use cohesive_beam::{BeamSection, cohesive_beam, cohesive_beam_energy};
 pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBond, RecentStrains, Separation};
 
-use std::fmt::Debug;
+use core::fmt::Debug;
 
-use fractum_math::{Rotation, Sym3, Vec3};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::DemError;
 use crate::lanes::{Lanes, Vector};
+use crate::{Rotation, Sym3, Vec3};
 
 /// How a bond pulls, bends and dissipates. A law sees one bond and what this remembers, never its neighbours.
 ///
@@ -36,12 +35,12 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
     ///
     /// # Errors
     /// Which number is wrong.
-    fn check(&self) -> Result<(), DemError>;
+    fn check(&self) -> Result<(), BadLaw>;
 
     /// Parameters of a bond when it is made.
     ///
     /// - `length` l₀ [m]; `radius` of its particles [m]
-    /// - `share`: factor on the area that the law gives the bond, see [`super::BondNetwork::with_shares`]
+    /// - `share`: factor on the area that the law gives the bond, 1 for the whole one
     fn parameters(&self, length: f64, radius: [f64; 2], share: f64) -> Self::Parameters;
 
     /// Forces and moments of `W` bonds side by side at their present state, which also carries memory on. A second call
@@ -312,7 +311,7 @@ impl BondEnergy {
     }
 }
 
-impl std::ops::Add for BondEnergy {
+impl core::ops::Add for BondEnergy {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         BondEnergy {

@@ -8,15 +8,15 @@ mod tests;
 
 pub use interface::{Crushing, InterfaceFailure, InterfaceMemory, RecentStrains, Separation};
 
-use fractum_math::Sym3;
-
 use steady::Past;
 
 use super::{
-    BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, EnergyLanes, ForceLanes,
+    BadLaw, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, DeviatingForces, EnergyLanes, ForceLanes,
     MeanElasticity, Turn,
 };
-use crate::DemError;
+use crate::Sym3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
 
 /// Stress at the interface of two particles from their relative displacement:
@@ -121,6 +121,7 @@ impl LocalBond {
     pub const LARGEST_POISSON_RATIO: f64 = 0.49;
 
     /// An elastic interface that holds for ever.
+    #[inline]
     pub fn elastic(young_modulus: f64, poisson_ratio: f64) -> Self {
         LocalBond {
             young_modulus,
@@ -156,6 +157,7 @@ impl LocalBond {
     }
 
     /// Whether bonds can separate.
+    #[inline]
     pub fn can_fail(&self) -> bool {
         self.tensile_strength.is_finite() || self.shear_strength.is_finite()
     }
@@ -269,8 +271,8 @@ impl BondLaw for LocalBond {
         recent.separated
     }
 
-    fn check(&self) -> Result<(), DemError> {
-        let wrong = |what, value, expected| Err(DemError::BadCriterion { what, value, expected });
+    fn check(&self) -> Result<(), BadLaw> {
+        let wrong = |what, value, expected| Err(BadLaw::Number { what, value, expected });
         if !(self.young_modulus.is_finite() && self.young_modulus > 0.0) {
             return wrong("Young's modulus", self.young_modulus, "a positive number of pascals");
         }
@@ -325,7 +327,7 @@ impl BondLaw for LocalBond {
 
     fn parameters(&self, length: f64, [first, second]: [f64; 2], share: f64) -> Interface {
         let radius = first.min(second);
-        let area = share * std::f64::consts::PI * radius * radius;
+        let area = share * core::f64::consts::PI * radius * radius;
         let arm = 0.5 + 0.5 * (first - second) / length;
         Interface { area, arm: arm.clamp(0.0, 1.0), radius }
     }
@@ -423,7 +425,7 @@ impl BondLaw for LocalBond {
     }
 
     fn face_stiffness(&self, rest: f64) -> [f64; 2] {
-        let normal = self.young_modulus * std::f64::consts::PI * rest / 4.0;
+        let normal = self.young_modulus * core::f64::consts::PI * rest / 4.0;
         [normal, normal * self.shear_modulus() / self.young_modulus]
     }
 

@@ -1,9 +1,12 @@
 //! Numbers and vectors side by side, for laws that handle several bonds at once, and for particles that move.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use core::ops::{Add, Mul, Neg, Sub};
+
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// Bonds computed side by side.
-pub(crate) const WIDTH: usize = 8;
+pub const WIDTH: usize = 8;
 
 /// `W` numbers handled side by side: plain arrays that the compiler turns into vector instructions.
 #[derive(Clone, Copy)]
