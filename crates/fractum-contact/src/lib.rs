@@ -22,7 +22,6 @@ mod foot;
 mod frame;
 mod hierarchy;
 mod inside;
-pub mod law;
 mod nearest;
 mod passes;
 mod shape;
@@ -32,6 +31,8 @@ mod sphere_sphere;
 pub mod surface;
 mod surface_block;
 mod touch;
+
+pub use fractum_kernels::contact as law;
 
 pub use broad_phase::{close_pairs, close_pairs_of};
 pub use error::SurfaceError;

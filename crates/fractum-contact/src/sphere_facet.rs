@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
+use fractum_kernels::contact::ContactLaw;
 use fractum_math::{Vec3, Work};
 use parry3d_f64::bounding_volume::Aabb;
 use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy};
 use rayon::prelude::*;
 
-use crate::law::ContactLaw;
 use crate::surface::FacetMesh;
 use crate::surface_block::Block;
 use crate::touch::{Spheres, Surface, Touch};

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
+use fractum_kernels::contact::{ContactLaw, PairMotion};
 use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
 
 use crate::broad_phase::close_pairs;
-use crate::law::{ContactLaw, PairMotion};
 use crate::touch::Spheres;
 
 /// Pairs handled as one piece of parallel work.

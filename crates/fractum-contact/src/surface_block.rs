@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
+use fractum_kernels::contact::{ContactLaw, PairMotion};
 use fractum_math::{Vec3, Work};
 
 use crate::foot::Foot;
 use crate::hierarchy::DoubleHierarchy;
 use crate::inside::foot_from_inside;
-use crate::law::{ContactLaw, PairMotion};
 use crate::surface::FacetMesh;
 use crate::touch::{Spheres, Surface, Touch};
 

@@ -14,6 +14,7 @@
 #![cfg_attr(not(any(feature = "std", test)), no_std)]
 
 pub mod bond;
+pub mod contact;
 pub mod damage;
 pub mod elementary;
 #[cfg(not(feature = "std"))]

@@ -23,6 +23,7 @@ impl BeamSection {
     ///
     /// # Errors
     /// [`BadLaw::Section`] unless both numbers are positive and finite.
+    #[inline]
     pub fn new(young_modulus: f64, radius: f64) -> Result<Self, BadLaw> {
         let section = BeamSection { young_modulus, poisson_ratio: 0.3, radius };
         section.check()?;
@@ -77,6 +78,7 @@ impl BeamSection {
 ///
 /// The beam as a bond of discrete elements: André, Iordanoff, Charles and Néauport, *Comput. Methods Appl. Mech. Eng.*
 /// 213–216 (2012) 113–125; forces after Jebahi et al. (2015), 2.4.1, with the signs corrected.
+#[inline]
 pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BondForces {
     section.forces(&pair.lanes(), &[()], &mut (), &mut [()]).into()
 }
@@ -96,6 +98,7 @@ impl BondLaw for BeamSection {
         BeamSection::check(self)
     }
 
+    #[inline]
     fn parameters(&self, _: f64, _: [f64; 2], _: f64) {}
 
     #[inline(always)]
@@ -145,10 +148,12 @@ impl BondLaw for BeamSection {
         }
     }
 
+    #[inline]
     fn dissipated(&self, _: f64, _: &(), _: &()) -> f64 {
         0.0
     }
 
+    #[inline]
     fn stiffness(&self, length: f64, _: &()) -> BondStiffness {
         let bending = self.bending() / length;
         BondStiffness {
@@ -159,20 +164,24 @@ impl BondLaw for BeamSection {
         }
     }
 
+    #[inline]
     fn face_stiffness(&self, rest: f64) -> [f64; 2] {
         [self.axial() / rest, 12.0 * self.bending() / rest.powi(3)]
     }
 
+    #[inline]
     fn section_radius(&self) -> f64 {
         self.radius
     }
 
+    #[inline]
     fn beam(&self) -> Option<BeamSection> {
         Some(*self)
     }
 }
 
 /// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].
+#[inline]
 pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BondEnergy {
     section.energy(pair, &(), &())
 }

@@ -189,6 +189,7 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
 }
 
 /// The memory of a bond as that of the only one of its lanes.
+#[inline]
 fn alone<L: BondLaw>(memory: &L::Memory) -> (L::Recent<1>, [L::Memory; 1]) {
     let (mut recent, mut alone) = (L::Recent::default(), [L::Memory::default()]);
     L::remember(*memory, 0, &mut recent, &mut alone);
@@ -306,6 +307,7 @@ pub struct BondEnergy {
 
 impl BondEnergy {
     /// Sum of the three.
+    #[inline]
     pub fn total(&self) -> f64 {
         self.tension + self.bending + self.torsion
     }
@@ -313,6 +315,7 @@ impl BondEnergy {
 
 impl core::ops::Add for BondEnergy {
     type Output = Self;
+    #[inline]
     fn add(self, other: Self) -> Self {
         BondEnergy {
             tension: self.tension + other.tension,
@@ -338,11 +341,13 @@ pub struct BondStiffness {
 
 impl BondStiffness {
     /// Transverse force per transverse displacement of an end [N/m]; 12 E I/l³ of a beam.
+    #[inline]
     pub fn shear(&self, length: f64) -> f64 {
         2.0 * (self.bending + self.carry_over) / (length * length)
     }
 
     /// Transverse force per rotation of an end [N]; 6 E I/l² of a beam.
+    #[inline]
     pub fn coupling(&self, length: f64) -> f64 {
         (self.bending + self.carry_over) / length
     }
@@ -363,6 +368,7 @@ pub struct BondedPair {
 
 impl BondedPair {
     /// The pair as the only one of its lanes.
+    #[inline]
     pub(crate) fn lanes(&self) -> BondLanes<1> {
         let vector = |v: Vec3| [Lanes([v.x]), Lanes([v.y]), Lanes([v.z])];
         let turn = |r: &Rotation| (Lanes([r.w]), [Lanes([r.i]), Lanes([r.j]), Lanes([r.k])]);
@@ -377,6 +383,7 @@ impl BondedPair {
 }
 
 impl From<ForceLanes<1>> for BondForces {
+    #[inline]
     fn from(lanes: ForceLanes<1>) -> Self {
         let vector = |v: Vector<1>| Vec3::new(v[0].0[0], v[1].0[0], v[2].0[0]);
         BondForces { force: vector(lanes.force), moment: lanes.moment.map(vector) }

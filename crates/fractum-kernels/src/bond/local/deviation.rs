@@ -121,6 +121,7 @@ impl LocalBond {
     }
 
     /// Force that an interface transmits, that of the mean strain included (eqs. 21 and 22 of the source).
+    #[inline]
     pub(super) fn traction_of(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> BondForces {
         let lanes = pair.lanes();
         let mean = mean.0.map(|e| Lanes([e]));
@@ -134,6 +135,7 @@ impl LocalBond {
     }
 
     /// The memory of a whole interface that fails now, and rubs from now on where it is closed.
+    #[inline]
     pub(super) fn failed_memory(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> InterfaceMemory {
         let lanes = pair.lanes();
         let mean = mean.0.map(|e| Lanes([e]));

@@ -43,6 +43,7 @@ impl Crushing {
     }
 
     /// Compressive stress [Pa] at a compressive strain that grows from zero.
+    #[inline]
     fn stress_at(&self, young_modulus: f64, strain: f64) -> f64 {
         let below = |line: &[f64; 3]| strain > line[1];
         let lines = self.lines(young_modulus);
@@ -79,11 +80,13 @@ pub struct InterfaceMemory {
 
 impl InterfaceMemory {
     /// Whether nothing but elastic strain has happened.
+    #[inline]
     pub(super) fn is_whole(&self) -> bool {
         self.crushed == 0.0 && self.damage == [0.0; 2]
     }
 
     /// Whether no cohesion is left.
+    #[inline]
     pub(super) fn is_separated(&self) -> bool {
         self.damage[0] >= 1.0
     }
@@ -101,17 +104,20 @@ pub struct RecentStrains<const W: usize> {
 }
 
 impl<const W: usize> Default for RecentStrains<W> {
+    #[inline]
     fn default() -> Self {
         RecentStrains { last: [[0.0; W]; 4], inelastic: 0, separated: 0 }
     }
 }
 
 impl<const W: usize> RecentStrains<W> {
+    #[inline]
     pub(super) fn recall(&self, memory: &InterfaceMemory, lane: usize) -> InterfaceMemory {
         let last = if self.inelastic >> lane & 1 == 1 { memory.last } else { self.last.map(|of| of[lane]) };
         InterfaceMemory { last, ..*memory }
     }
 
+    #[inline]
     pub(super) fn remember(&mut self, memory: &InterfaceMemory, lane: usize) {
         (0..4).for_each(|k| self.last[k][lane] = memory.last[k]);
         let set = |bits: u32, on: bool| bits & !(1 << lane) | u32::from(on) << lane;
@@ -120,19 +126,23 @@ impl<const W: usize> RecentStrains<W> {
     }
 }
 
+#[inline]
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline]
 fn times(a: [f64; 3], factor: f64) -> [f64; 3] {
     a.map(|a| a * factor)
 }
 
+#[inline]
 fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     core::array::from_fn(|k| a[k] - b[k])
 }
 
 /// Damage at a load `ratio` times the strength, if the force falls on a line to zero at `end` times the elastic limit.
+#[inline]
 fn softened(ratio: f64, end: f64) -> f64 {
     if ratio <= 1.0 {
         0.0
@@ -144,6 +154,7 @@ fn softened(ratio: f64, end: f64) -> f64 {
 }
 
 /// Load over strength; without strength any load is too much.
+#[inline]
 fn ratio(load: f64, strength: f64) -> f64 {
     if load > 0.0 { load / strength } else { 0.0 }
 }
@@ -153,6 +164,7 @@ pub(super) const ROUND_OFF: f64 = 1e-12;
 
 impl LocalBond {
     /// Compressive strain that stays without load.
+    #[inline]
     fn plastic_strain(&self, memory: &InterfaceMemory) -> f64 {
         match memory.crushed {
             0.0 => 0.0,
@@ -161,6 +173,7 @@ impl LocalBond {
     }
 
     /// Stress and elastic energy per volume at a normal strain.
+    #[inline]
     fn normal(&self, strain: f64, memory: &InterfaceMemory) -> [f64; 2] {
         let elastic = strain + self.plastic_strain(memory);
         let whole = if elastic > 0.0 { 1.0 - memory.damage[0] } else { 1.0 };
@@ -169,6 +182,7 @@ impl LocalBond {
     }
 
     /// Whether an interface that has separated is in contact at a normal strain.
+    #[inline]
     pub(super) fn is_closed(&self, strain: f64, memory: &InterfaceMemory) -> bool {
         strain + self.plastic_strain(memory) < 0.0
     }
@@ -200,6 +214,7 @@ impl LocalBond {
     /// Stresses at the present strains (normal, and a vector across), and the slip; carries the memory on.
     ///
     /// - `slip`, `from`: slip and last shear strain of the memory in the axes of `shear`
+    #[inline]
     pub(super) fn stress(
         &self,
         normal: f64,
@@ -232,6 +247,7 @@ impl LocalBond {
     }
 
     /// Lets damage grow.
+    #[inline]
     fn damage(&self, elastic: f64, shear: f64, compression: f64, memory: &mut InterfaceMemory) {
         if memory.is_separated() {
             return;
@@ -268,6 +284,7 @@ impl LocalBond {
     /// The memory of an interface that was whole and separates at once, and rubs where it is closed.
     ///
     /// - `normal`, `shear`: normal strain, and shear strain in the axes of the first particle
+    #[inline]
     pub(super) fn separated_memory(&self, how: Separation, normal: f64, shear: [f64; 3]) -> InterfaceMemory {
         let compression = self.young_modulus * (-normal).max(0.0);
         let slip = self.slipped(shear, [0.0; 3], compression);
@@ -276,6 +293,7 @@ impl LocalBond {
     }
 
     /// Slip of the failed part under Coulomb's law.
+    #[inline]
     fn slipped(&self, shear: [f64; 3], slip: [f64; 3], compression: f64) -> [f64; 3] {
         let most = self.friction * compression;
         let modulus = self.shear_modulus();
@@ -285,6 +303,7 @@ impl LocalBond {
     }
 
     /// Elastic energy per volume of a bond at a normal strain and a shear strain, along and across.
+    #[inline]
     pub(super) fn stored(&self, normal: f64, shear: [f64; 3], slip: [f64; 3], memory: &InterfaceMemory) -> [f64; 2] {
         let [_, along] = self.normal(normal, memory);
         let failed = memory.damage[1];

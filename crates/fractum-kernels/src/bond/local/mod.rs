@@ -248,6 +248,7 @@ impl BondLaw for LocalBond {
     type Memory = InterfaceMemory;
     type Recent<const W: usize> = RecentStrains<W>;
 
+    #[inline]
     fn recall<const W: usize>(
         recent: &RecentStrains<W>,
         memory: &[InterfaceMemory; W],
@@ -256,6 +257,7 @@ impl BondLaw for LocalBond {
         recent.recall(&memory[lane], lane)
     }
 
+    #[inline]
     fn remember<const W: usize>(
         saved: InterfaceMemory,
         lane: usize,
@@ -325,6 +327,7 @@ impl BondLaw for LocalBond {
         }
     }
 
+    #[inline]
     fn parameters(&self, length: f64, [first, second]: [f64; 2], share: f64) -> Interface {
         let radius = first.min(second);
         let area = share * core::f64::consts::PI * radius * radius;
@@ -370,10 +373,12 @@ impl BondLaw for LocalBond {
         energies
     }
 
+    #[inline]
     fn dissipated(&self, length: f64, own: &Interface, memory: &InterfaceMemory) -> f64 {
         memory.dissipated * own.area * length
     }
 
+    #[inline]
     fn stiffness(&self, length: f64, own: &Interface) -> BondStiffness {
         let across = self.shear_modulus() * own.area / length;
         // The longer arm at both ends: a bound where the interface is not in the middle.
@@ -381,6 +386,7 @@ impl BondLaw for LocalBond {
         BondStiffness { axial: self.young_modulus * own.area / length, bending, carry_over: bending, twist: 0.0 }
     }
 
+    #[inline]
     fn mean_elasticity(&self) -> Option<MeanElasticity> {
         let of = |fraction| MeanElasticity { lame: self.lame(), shear_modulus: self.shear_modulus(), fraction };
         self.mean_strain.map(of)
@@ -410,39 +416,47 @@ impl BondLaw for LocalBond {
         self.energies_beside(mean, bonds, own, recent, memory)
     }
 
+    #[inline]
     fn traction(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> Option<BondForces> {
         Some(self.traction_of(pair, mean, own))
     }
 
+    #[inline]
     fn failed(&self, pair: &BondedPair, mean: Sym3, own: &Interface) -> InterfaceMemory {
         self.failed_memory(pair, mean, own)
     }
 
+    #[inline]
     fn with_dissipated(&self, memory: InterfaceMemory, energy: f64, length: f64, own: &Interface) -> InterfaceMemory {
         let mut memory = memory;
         memory.dissipated += energy / (own.area * length);
         memory
     }
 
+    #[inline]
     fn face_stiffness(&self, rest: f64) -> [f64; 2] {
         let normal = self.young_modulus * core::f64::consts::PI * rest / 4.0;
         [normal, normal * self.shear_modulus() / self.young_modulus]
     }
 
+    #[inline]
     fn section_radius(&self) -> f64 {
         1.0
     }
 
+    #[inline]
     fn separation(memory: &InterfaceMemory) -> Option<Separation> {
         memory.separation
     }
 
     /// C = 2 ξ α A/(d r) √(m K_n) [N s/m], with the smaller radius r and the reduced mass m (eq. 10 of the source).
+    #[inline]
     fn viscosity(&self, length: f64, own: &Interface, mass: f64) -> f64 {
         let stiffness = self.young_modulus * own.area / length;
         2.0 * self.damping_ratio * own.area / (length * own.radius) * (mass * stiffness).sqrt()
     }
 
+    #[inline]
     fn touches(&self, strain: f64, memory: &InterfaceMemory) -> bool {
         !memory.is_separated() || self.is_closed(strain, memory)
     }

@@ -1,8 +1,10 @@
-use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::motion::PairMotion;
 use super::slip::slip_to_cone;
+use crate::Vec3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// Friction against rolling: an elastic-plastic spring between the rotations of both bodies.
 ///
@@ -45,11 +47,13 @@ pub struct RollingMemory {
 
 impl RollingMemory {
     /// Energy in the spring [J].
+    #[inline]
     pub(super) fn stored(&self) -> f64 {
         if self.stiffness > 0.0 { 0.5 * self.moment.norm_squared() / self.stiffness } else { 0.0 }
     }
 
     /// Energy that the damper of the last step takes in a step that ends out of contact [J].
+    #[inline]
     pub(super) fn last_damping(&self, motion: &PairMotion) -> f64 {
         0.5 * self.drag.dot(&motion.spin) * motion.dt
     }
@@ -57,18 +61,21 @@ impl RollingMemory {
 
 impl Rolling {
     /// Friction of a coefficient μ_r ≥ 0 for an effective radius R* [m] and an effective mass m* [kg].
+    #[inline]
     pub fn new(coefficient: f64, radius: f64, mass: f64) -> Self {
         Rolling { arm: coefficient * radius, inertia: 1.4 * mass * radius * radius }
     }
 
     /// Squared frequency that a sphere of `radius` [m] which turns freely has for an explicit step, over k_n/m: k_r m/I (√(1 + ζ²) + ζ)² with
     /// the damping ratio ζ = √(7/2) that 2 √(7/5 m r² k_r) is for I = 2/5 m r².
+    #[inline]
     pub fn frequency_factor(&self, radius: f64) -> f64 {
         2.25 * 2.5 * (self.arm / radius).powi(2) * (4.5f64.sqrt() + 3.5f64.sqrt()).powi(2)
     }
 
     /// Couple of a contact with the given normal force [N] and stiffness [N/m], both above 0; its memory advances with
     /// the call.
+    #[inline]
     pub(super) fn couple(
         &self,
         motion: &PairMotion,

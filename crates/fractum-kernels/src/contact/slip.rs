@@ -1,10 +1,11 @@
-use fractum_math::Vec3;
+use crate::Vec3;
 
 /// Coulomb's slip: what is left of a trial force or stretch, brought back to the cone along its own direction (return
 /// mapping; Simo and Hughes, *Computational Inelasticity* (1998), chapter 1). All friction of contacts goes through here.
 ///
 /// - `size`: the trial force [N], or moment [N m]
 /// - `limit`: the largest one, μ times the normal force, ≥ 0
+#[inline]
 pub fn slip_to_cone(trial: Vec3, size: f64, limit: f64) -> Vec3 {
     if size > limit { trial * (limit / size) } else { trial }
 }

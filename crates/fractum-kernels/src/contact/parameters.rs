@@ -12,6 +12,7 @@ pub struct ContactParameters {
 }
 
 impl Default for ContactParameters {
+    #[inline]
     fn default() -> Self {
         ContactParameters { friction: 0.5, rolling_friction: 0.0, damping_ratio: 0.1 }
     }
@@ -19,6 +20,7 @@ impl Default for ContactParameters {
 
 impl ContactParameters {
     /// A pair of surfaces: the smaller coefficients of friction, the mean damping ratio.
+    #[inline]
     pub fn against(self, other: ContactParameters) -> ContactParameters {
         ContactParameters {
             friction: self.friction.min(other.friction),

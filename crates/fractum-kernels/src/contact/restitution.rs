@@ -1,5 +1,8 @@
-use fractum_math::elementary::{asin, exp, ln, tan};
-use std::f64::consts::PI;
+use core::f64::consts::PI;
+
+use crate::elementary::{asin, exp, ln, tan};
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// Restitution of a contact with damping ratio ζ whose force never pulls: the contact ends where spring and damper
 /// balance.
@@ -8,6 +11,7 @@ use std::f64::consts::PI;
 /// Pöschel 2007, eq. 21), which with ζ = sin α is e = exp(-(π - 2 α) tan α). Hertz' law with c = √5 ζ √(m k_h) δ^¼ has
 /// the very same e(ζ): with u ∝ δ^(5/4) as coordinate its motion is that of the linear oscillator, zero force included.
 /// Strictly decreasing from 1 at ζ = 0; e⁻² at ζ = 1; valid for every ζ ≥ 0.
+#[inline]
 pub fn restitution_of_damping(ratio: f64) -> f64 {
     if ratio < 1.0 - 1e-9 {
         let alpha = asin(ratio);
@@ -24,6 +28,7 @@ pub fn restitution_of_damping(ratio: f64) -> f64 {
 /// Damping ratio ζ that gives a restitution in (0, 1]: the inverse of [`restitution_of_damping`].
 ///
 /// Restitutions below 1e-6 count as 1e-6; values above 1 as 1.
+#[inline]
 pub fn damping_of_restitution(restitution: f64) -> f64 {
     let target = restitution.clamp(1e-6, 1.0);
     if target == 1.0 {

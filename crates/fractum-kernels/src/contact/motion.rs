@@ -1,4 +1,4 @@
-use fractum_math::{Vec3, Work};
+use crate::{Vec3, Work};
 
 /// Geometry and motion of a pair at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,7 @@ pub struct ContactForce {
 
 impl ContactForce {
     /// Its energies.
+    #[inline]
     pub fn work(&self) -> Work {
         Work::contact(self.stored, self.friction, self.damping)
     }

@@ -1,5 +1,8 @@
 use serde::{Deserialize, Serialize};
 
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
+
 /// A normal spring that knows the work that it has taken.
 ///
 /// Central differences let the force of an instant act over the halves of the steps beside it. The spring of constant stiffness k has then
@@ -34,11 +37,13 @@ pub(super) struct Pressed {
 
 impl AccountedSpring {
     /// Work that the spring has taken and not given back [J].
+    #[inline]
     pub(super) fn energy(&self) -> f64 {
         self.energy
     }
 
     /// Force of the spring [N].
+    #[inline]
     pub(super) fn press(&mut self, pressed: &Pressed) -> f64 {
         let Pressed { stiffness, mass, overlap, way, dt, viscosity } = *pressed;
         let full = stiffness * overlap;
@@ -76,6 +81,7 @@ impl AccountedSpring {
     }
 
     /// Ends the contact; what the last step leaves of its energy [J].
+    #[inline]
     pub(super) fn part(&mut self, way: f64) -> f64 {
         let left = self.energy + 0.5 * self.force * way;
         *self = AccountedSpring::default();

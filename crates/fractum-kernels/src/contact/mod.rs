@@ -1,4 +1,4 @@
-//! What a touching pair feels.
+//! Laws of contact: what a touching pair feels.
 
 mod accounted_spring;
 mod hertz;
@@ -20,7 +20,7 @@ pub use slip::slip_to_cone;
 /// A law of contact between two bodies at one point.
 pub trait ContactLaw: Copy + Send + Sync {
     /// What a contact remembers from step to step; its default is that of a new contact.
-    type Memory: Copy + Default + std::fmt::Debug + Send + Sync;
+    type Memory: Copy + Default + core::fmt::Debug + Send + Sync;
 
     /// Force of a pair; its memory advances with the call, which must be one per step.
     fn force(&self, motion: &PairMotion, memory: &mut Self::Memory) -> ContactForce;
@@ -40,18 +40,22 @@ pub trait ContactLaw: Copy + Send + Sync {
 impl ContactLaw for Linear {
     type Memory = ContactMemory;
 
+    #[inline]
     fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         Linear::force(self, motion, memory)
     }
 
+    #[inline]
     fn add_overlap_offset(memory: &mut ContactMemory, by: f64) {
         memory.overlap_offset += by;
     }
 
+    #[inline]
     fn overlap_offset(memory: &ContactMemory) -> f64 {
         memory.overlap_offset
     }
 
+    #[inline]
     fn stiffness(&self, _overlap: f64) -> (f64, f64) {
         (self.normal_stiffness, self.tangential_stiffness)
     }
@@ -59,7 +63,7 @@ impl ContactLaw for Linear {
 
 #[cfg(test)]
 mod tests {
-    use fractum_math::Vec3;
+    use crate::Vec3;
 
     use super::*;
 

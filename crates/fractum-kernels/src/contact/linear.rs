@@ -1,10 +1,12 @@
-use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::ContactParameters;
 use super::motion::{ContactForce, PairMotion};
 use super::rolling::{Rolling, RollingMemory};
 use super::slip::slip_to_cone;
+use crate::Vec3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// Linear springs along and across the normal with viscous damping, Coulomb friction, and friction against [`Rolling`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,6 +42,7 @@ impl Linear {
     /// the reduced mass m.
     ///
     /// - `young_modulus` [Pa], `poisson_ratio`, `radii` [m], `masses` [kg]
+    #[inline]
     pub fn between_spheres(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -48,7 +51,7 @@ impl Linear {
         surface: ContactParameters,
     ) -> Self {
         let smaller = radii[0].min(radii[1]);
-        let stiffness = young_modulus * std::f64::consts::PI * smaller * smaller / (radii[0] + radii[1]);
+        let stiffness = young_modulus * core::f64::consts::PI * smaller * smaller / (radii[0] + radii[1]);
         let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
         Linear::new(stiffness, poisson_ratio, reduced(radii), reduced(masses), surface)
     }
@@ -56,6 +59,7 @@ impl Linear {
     /// The law of two elastic discs in the plane: k_n = E 2 min(r) t/(r_i + r_j), the rest as between spheres.
     ///
     /// - `thickness` t [m], the smaller one of the two
+    #[inline]
     pub fn between_discs(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -70,6 +74,7 @@ impl Linear {
     }
 
     /// The law of a disc on a rigid wall, that of a disc on its mirror image: k_n = E t.
+    #[inline]
     pub fn disc_on_wall(
         young_modulus: f64,
         poisson_ratio: f64,
@@ -82,11 +87,13 @@ impl Linear {
     }
 
     /// The law of a sphere on a rigid wall, that of a sphere on its mirror image: k_n = E π r/2.
+    #[inline]
     pub fn on_wall(young_modulus: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: ContactParameters) -> Self {
-        let stiffness = 0.5 * young_modulus * std::f64::consts::PI * radius;
+        let stiffness = 0.5 * young_modulus * core::f64::consts::PI * radius;
         Linear::new(stiffness, poisson_ratio, radius, mass, surface)
     }
 
+    #[inline]
     fn new(stiffness: f64, poisson_ratio: f64, radius: f64, mass: f64, surface: ContactParameters) -> Self {
         let tangential_stiffness = stiffness / (2.0 * (1.0 + poisson_ratio));
         Linear {
@@ -99,6 +106,7 @@ impl Linear {
     }
 
     /// The same with another normal stiffness [N/m], with the tangential one and the damper that go with it.
+    #[inline]
     pub fn with_stiffness(self, normal_stiffness: f64) -> Self {
         let ratio = normal_stiffness / self.normal_stiffness;
         Linear {
@@ -114,10 +122,11 @@ impl Linear {
     /// A contact that begins or ends in a step beside the moment acts for a part of that step only, see
     /// `partial_spring`. Out of contact the slip is forgotten. The damper never pulls: the normal force stays ≥ 0. Energies are those of
     /// the step that led here, with the mean of the forces at its ends, as central differences book them.
+    #[inline]
     pub fn force(&self, motion: &PairMotion, memory: &mut ContactMemory) -> ContactForce {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
-        let last = std::mem::take(&mut memory.damper);
+        let last = core::mem::take(&mut memory.damper);
         memory.overlap_offset = memory.overlap_offset.min(motion.overlap.max(0.0));
         let overlap = motion.overlap - memory.overlap_offset;
         if overlap <= 0.0 {
@@ -137,7 +146,7 @@ impl Linear {
         // The spring is stretched in the tangent plane of the middle of the step: seen from there the forces at both ends
         // of the step do the work that the stretch takes.
         let before = turned_to(memory.slip, &n);
-        let last_normal = std::mem::replace(&mut memory.normal, n);
+        let last_normal = core::mem::replace(&mut memory.normal, n);
         let middle = if last_normal.dot(&n) > 0.0 { (n + last_normal).normalize() } else { n };
         let way = motion.velocity * motion.dt;
         let trial = turned_to(turned_to(memory.slip, &middle) + way - middle * way.dot(&middle), &n);
@@ -163,6 +172,7 @@ impl Linear {
 
     /// Stretch of the tangential spring that a largest force [N] leaves of `trial`, and the energy that slipping took since the
     /// stretch was `before` [J].
+    #[inline]
     fn slide(&self, before: Vec3, trial: Vec3, limit: f64) -> (Vec3, f64) {
         let after = slip_to_cone(trial, self.tangential_stiffness * trial.norm(), limit);
         let mean_force = (before + after) * (0.5 * self.tangential_stiffness);
@@ -177,6 +187,7 @@ impl Linear {
 /// k δ (1 + δ/|w|)/2. The energy is what it has done in the step to here, or will do in the next one: F |w|/2. At a constant
 /// rate the spring then closes and opens without gain or loss; with the full force each time costs or brings
 /// k δ (|w| - δ)/2, which does not vanish in the sum where contacts last for few steps.
+#[inline]
 fn partial_spring(stiffness: f64, overlap: f64, way: f64) -> (f64, f64) {
     let (full, way) = (stiffness * overlap, way.abs());
     if way <= overlap {
@@ -187,6 +198,7 @@ fn partial_spring(stiffness: f64, overlap: f64, way: f64) -> (f64, f64) {
 }
 
 /// A stretch turned into the plane across a normal, where it keeps its length.
+#[inline]
 fn turned_to(stretch: Vec3, normal: &Vec3) -> Vec3 {
     let flat = stretch - normal * stretch.dot(normal);
     let length = flat.norm();

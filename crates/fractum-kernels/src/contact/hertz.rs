@@ -1,10 +1,12 @@
-use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::accounted_spring::{AccountedSpring, Pressed};
 use super::rolling::{Rolling, RollingMemory};
 use super::slip::slip_to_cone;
 use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
+use crate::Vec3;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
 
 /// Elastic constants of a material in contact.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -20,11 +22,13 @@ impl ElasticMaterial {
     pub const RIGID: Self = ElasticMaterial { young_modulus: f64::INFINITY, poisson_ratio: 0.0 };
 
     /// (1 - ν²)/E [1/Pa].
+    #[inline]
     fn normal_compliance(&self) -> f64 {
         (1.0 - self.poisson_ratio * self.poisson_ratio) / self.young_modulus
     }
 
     /// (2 - ν)/G [1/Pa].
+    #[inline]
     fn shear_compliance(&self) -> f64 {
         2.0 * (1.0 + self.poisson_ratio) * (2.0 - self.poisson_ratio) / self.young_modulus
     }
@@ -44,6 +48,7 @@ pub struct MaterialPair {
 
 impl MaterialPair {
     /// Two materials; `surface` is that of the pair, [`ContactParameters::against`].
+    #[inline]
     pub fn new(materials: [ElasticMaterial; 2], surface: ContactParameters) -> Self {
         let sum = |of: fn(&ElasticMaterial) -> f64| 1.0 / (of(&materials[0]) + of(&materials[1]));
         MaterialPair {
@@ -105,6 +110,7 @@ pub struct HertzMemory {
 impl Hertz {
     /// The law of two bodies of effective radius R* = R₁R₂/(R₁ + R₂) [m] and effective mass m* = m₁m₂/(m₁ + m₂) [kg];
     /// a flat or very heavy partner counts as infinite, so that the sphere's own value is left.
+    #[inline]
     pub fn new(pair: &MaterialPair, effective_radius: f64, effective_mass: f64) -> Self {
         let root = effective_radius.sqrt();
         let normal = 4.0 / 3.0 * pair.effective_modulus * root;
@@ -123,6 +129,7 @@ impl Hertz {
     /// The flat contact of a body of effective mass m* [kg].
     ///
     /// - `stiffness`: normal and tangential [N/m]; `arm`: radius that friction against rolling takes [m]
+    #[inline]
     pub fn flat(stiffness: [f64; 2], surface: ContactParameters, arm: f64, effective_mass: f64) -> Self {
         let [normal, tangential] = stiffness;
         Hertz {
@@ -139,6 +146,7 @@ impl Hertz {
     /// Force [N] and energy [J] of the normal spring at an overlap δ > 0, and √δ [m^½], which is 1 for a flat contact.
     ///
     /// - `way`: change of the overlap in the step [m]
+    #[inline]
     fn elastic(&self, overlap: f64, way: f64, dt: f64, spring: &mut AccountedSpring) -> (f64, f64, f64) {
         if let Some(mass) = self.flat {
             let force =
@@ -154,6 +162,7 @@ impl Hertz {
 impl ContactLaw for Hertz {
     type Memory = HertzMemory;
 
+    #[inline]
     fn force(&self, motion: &PairMotion, memory: &mut HertzMemory) -> ContactForce {
         let n = motion.normal;
         let approach = -motion.velocity.dot(&n);
@@ -223,14 +232,17 @@ impl ContactLaw for Hertz {
         force
     }
 
+    #[inline]
     fn add_overlap_offset(memory: &mut HertzMemory, by: f64) {
         memory.overlap_offset += by;
     }
 
+    #[inline]
     fn overlap_offset(memory: &HertzMemory) -> f64 {
         memory.overlap_offset
     }
 
+    #[inline]
     fn stiffness(&self, overlap: f64) -> (f64, f64) {
         if self.flat.is_some() {
             return (self.normal, self.tangential);
