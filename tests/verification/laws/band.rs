@@ -4,7 +4,7 @@ use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Plane, Sof
 use fractum_math::{Mat3, Vec3};
 use nalgebra::{Rotation3, Vector3};
 
-use super::{Draw, Held, hold};
+use super::draw::{Draw, Held, hold};
 
 /// Corners of a regular tetrahedron, the first three of a regular triangle.
 const CORNERS: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 0.866, 0.0], [0.5, 0.289, 0.816]];

@@ -20,7 +20,7 @@ mod tests;
 pub use fractum_kernels::bond::{
     BadLaw, BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, Crushing,
     DeviatingForces, EnergyLanes, ForceLanes, Interface, InterfaceFailure, InterfaceMemory, LocalBond, MeanElasticity,
-    RecentStrains, Separation, Turn, cohesive_beam, cohesive_beam_energy,
+    RecentStrains, Separation, Turn,
 };
 pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};

@@ -347,9 +347,7 @@ impl<L: BondLaw> BondNetwork<L> {
         if let Some(forces) = self.traction_of(bond, particles) {
             return forces;
         }
-        let (mut recent, mut memory) = (L::Recent::default(), [L::Memory::default()]);
-        L::remember(self.memory_of(bond), 0, &mut recent, &mut memory);
-        self.law.forces(&self.pair(bond, particles).lanes(), &[self.own[bond]], &mut recent, &mut memory).into()
+        self.law.force(&self.pair(bond, particles), &self.own[bond], &mut self.memory_of(bond))
     }
 
     /// Energy that a bond, live or not, would give back, by parts [J].

@@ -340,7 +340,7 @@ pub(crate) fn clear(f: &mut Dof6, fixed: u8) {
 
 #[cfg(test)]
 mod tests {
-    use fractum_kernels::bond::{BondForces, BondedPair, cohesive_beam};
+    use fractum_kernels::bond::{BondForces, BondLaw, BondedPair};
     use fractum_math::Rotation;
     use proptest::prelude::*;
 
@@ -496,7 +496,7 @@ mod tests {
                 rotation: [Rotation::from_scaled_axis(shift(0, 3)), Rotation::from_scaled_axis(shift(1, 3))],
                 ..start
             };
-            let BondForces { force, moment } = cohesive_beam(&moved, &section);
+            let BondForces { force, moment } = section.force(&moved, &(), &mut ());
             let expected = lattice.internal(&state);
             for a in 0..3 {
                 for (found, row) in [

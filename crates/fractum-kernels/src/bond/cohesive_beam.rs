@@ -1,8 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::{
-    BadLaw, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, EnergyLanes, ForceLanes, Turn,
-};
+use super::{BadLaw, BondLanes, BondLaw, BondStiffness, EnergyLanes, ForceLanes, Turn};
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, scale, sub};
@@ -67,7 +65,13 @@ impl BeamSection {
     }
 }
 
-/// Forces of a cohesive beam: the derivative of its energy
+/// Rotation of the second particle seen from the first.
+#[inline(always)]
+fn relative<const W: usize>((w1, u1): Turn<W>, (w2, u2): Turn<W>) -> Turn<W> {
+    (w1 * w2 + dot(u1, u2), sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2)))
+}
+
+/// A cohesive beam, whose forces are the derivative of its energy
 ///
 /// U = ½ (E S/l₀)(l − l₀)² + (2 E I/l₀)(θ₁² + θ₁·θ₂ + θ₂²) + ½ (G I₀/l₀) τ²
 ///
@@ -78,17 +82,6 @@ impl BeamSection {
 ///
 /// The beam as a bond of discrete elements: André, Iordanoff, Charles and Néauport, *Comput. Methods Appl. Mech. Eng.*
 /// 213–216 (2012) 113–125; forces after Jebahi et al. (2015), 2.4.1, with the signs corrected.
-#[inline]
-pub fn cohesive_beam(pair: &BondedPair, section: &BeamSection) -> BondForces {
-    section.forces(&pair.lanes(), &[()], &mut (), &mut [()]).into()
-}
-
-/// Rotation of the second particle seen from the first.
-#[inline(always)]
-fn relative<const W: usize>((w1, u1): Turn<W>, (w2, u2): Turn<W>) -> Turn<W> {
-    (w1 * w2 + dot(u1, u2), sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2)))
-}
-
 impl BondLaw for BeamSection {
     type Parameters = ();
     type Memory = ();
@@ -180,17 +173,12 @@ impl BondLaw for BeamSection {
     }
 }
 
-/// Elastic energy of a cohesive beam, by parts; see [`cohesive_beam`].
-#[inline]
-pub fn cohesive_beam_energy(pair: &BondedPair, section: &BeamSection) -> BondEnergy {
-    section.energy(pair, &(), &())
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::bond::{BondForces, BondedPair};
     use crate::{Rotation, Vec3};
 
     fn pair_of(x: [f64; 3], r: [f64; 3], s: [f64; 3], axis: [f64; 3]) -> BondedPair {
@@ -217,8 +205,8 @@ mod tests {
             x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
         ) {
             let pair = pair_of(x, r, s, n);
-            let forces = cohesive_beam(&pair, &section());
-            let energy = |p: &BondedPair| cohesive_beam_energy(p, &section()).total();
+            let forces = section().force(&pair, &(), &mut ());
+            let energy = |p: &BondedPair| section().energy(p, &(), &()).total();
             let h = 1e-5;
             let size = forces.force.norm() + forces.moment[0].norm() + forces.moment[1].norm() + 1e-3;
             for axis in 0..3 {
@@ -240,7 +228,7 @@ mod tests {
             x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
         ) {
             let pair = pair_of(x, r, s, n);
-            let BondForces { force, moment } = cohesive_beam(&pair, &section());
+            let BondForces { force, moment } = section().force(&pair, &(), &mut ());
             let arm = pair.position[1] - pair.position[0];
             let total = arm.cross(&force) + moment[0] + moment[1];
             prop_assert!(total.norm() < 1e-13 * (arm.norm() * force.norm() + moment[0].norm() + moment[1].norm()));
@@ -254,7 +242,7 @@ mod tests {
             let axis = (Vec3::from(n) + Vec3::new(2.5, 0.0, 0.0)).normalize();
             let start = Vec3::from(x);
             let pair = BondedPair { position: [start, start + rotation * axis * 1.2], rotation: [rotation; 2], axis, length: 1.2 };
-            let BondForces { force, moment } = cohesive_beam(&pair, &section());
+            let BondForces { force, moment } = section().force(&pair, &(), &mut ());
             let stiff = section().axial() / 1.2;
             prop_assert!(force.norm() + moment[0].norm() + moment[1].norm() < 3e-14 * stiff * (1.0 + start.norm()));
         }
@@ -266,7 +254,7 @@ mod tests {
             let pair = pair_of(x, r, s, [0.0; 3]);
             let turn = Rotation::from_scaled_axis(Vec3::from(q));
             let turned = BondedPair { position: pair.position.map(|p| turn * p), rotation: pair.rotation.map(|r| turn * r), ..pair };
-            let (a, b) = (cohesive_beam(&pair, &section()), cohesive_beam(&turned, &section()));
+            let (a, b) = (section().force(&pair, &(), &mut ()), section().force(&turned, &(), &mut ()));
             prop_assert!((turn * a.force - b.force).norm() < 1e-13 * (1.0 + a.force.norm()));
             prop_assert!((turn * a.moment[0] - b.moment[0]).norm() < 1e-13 * (1.0 + a.moment[0].norm()));
         }

@@ -5,7 +5,7 @@ mod cohesive_beam;
 mod local;
 
 pub use bad_law::BadLaw;
-pub use cohesive_beam::{BeamSection, cohesive_beam, cohesive_beam_energy};
+pub use cohesive_beam::BeamSection;
 pub use local::{Crushing, Interface, InterfaceFailure, InterfaceMemory, LocalBond, RecentStrains, Separation};
 
 use core::fmt::Debug;
@@ -52,6 +52,14 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         recent: &mut Self::Recent<W>,
         memory: &mut [Self::Memory; W],
     ) -> ForceLanes<W>;
+
+    /// [`BondLaw::forces`] of one bond, whose memory it carries on.
+    fn force(&self, pair: &BondedPair, own: &Self::Parameters, memory: &mut Self::Memory) -> BondForces {
+        let (mut recent, mut lanes) = alone::<Self>(memory);
+        let forces = self.forces(&pair.lanes(), &[*own], &mut recent, &mut lanes);
+        *memory = Self::recall(&recent, &lanes, 0);
+        forces.into()
+    }
 
     /// The memory of one of `W` bonds with its recent part.
     fn recall<const W: usize>(_: &Self::Recent<W>, memory: &[Self::Memory; W], lane: usize) -> Self::Memory {
@@ -369,7 +377,7 @@ pub struct BondedPair {
 impl BondedPair {
     /// The pair as the only one of its lanes.
     #[inline]
-    pub(crate) fn lanes(&self) -> BondLanes<1> {
+    pub fn lanes(&self) -> BondLanes<1> {
         let vector = |v: Vec3| [Lanes([v.x]), Lanes([v.y]), Lanes([v.z])];
         let turn = |r: &Rotation| (Lanes([r.w]), [Lanes([r.i]), Lanes([r.j]), Lanes([r.k])]);
         BondLanes {

@@ -1,0 +1,136 @@
+//! Properties of contacts, and of the restitution that their damping gives.
+
+use std::f64::consts::PI;
+
+use fractum_kernels::contact::{
+    ContactForce, ContactLaw, ContactParameters, ElasticMaterial, Hertz, Linear, MaterialPair, PairMotion,
+    damping_of_restitution, restitution_of_damping,
+};
+
+use super::draw::{Draw, Held, hold};
+
+/// Friction, rolling friction (none in half of the draws) and damping.
+pub(crate) fn surface(draw: &mut Draw) -> ContactParameters {
+    ContactParameters {
+        friction: draw.between(0.0, 1.5),
+        rolling_friction: draw.between(-0.3, 0.3).max(0.0),
+        damping_ratio: draw.between(0.0, 1.0),
+    }
+}
+
+/// Two bodies: modulus, Poisson's ratio, radii, masses.
+pub(crate) fn bodies(draw: &mut Draw) -> (f64, f64, [f64; 2], [f64; 2]) {
+    let radius = draw.over_decades(1e-4, 1e1);
+    let radii = [radius, radius * draw.over_decades(0.05, 20.0)];
+    let density = draw.between(500.0, 8000.0);
+    let masses = radii.map(|radius| 4.0 / 3.0 * PI * radius.powi(3) * density);
+    (draw.over_decades(1e6, 5e11), draw.between(0.0, 0.49), radii, masses)
+}
+
+/// A law with its radius and reach of friction against rolling [m].
+pub(crate) fn linear_spheres(draw: &mut Draw) -> (Linear, f64, ContactParameters) {
+    let (young, nu, radii, masses) = bodies(draw);
+    let surface = surface(draw);
+    (Linear::between_spheres(young, nu, radii, masses, surface), radii[0].min(radii[1]), surface)
+}
+
+pub(crate) fn linear_discs(draw: &mut Draw) -> (Linear, f64, ContactParameters) {
+    let (young, nu, radii, masses) = bodies(draw);
+    let surface = surface(draw);
+    let thickness = draw.over_decades(1e-3, 10.0);
+    (Linear::between_discs(young, nu, radii, thickness, masses, surface), radii[0].min(radii[1]), surface)
+}
+
+pub(crate) fn hertz(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
+    let (young, nu, radii, masses) = bodies(draw);
+    let surface = surface(draw);
+    let material = ElasticMaterial { young_modulus: young, poisson_ratio: nu };
+    let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
+    let pair = MaterialPair::new([material, material], surface);
+    (Hertz::new(&pair, reduced(radii), reduced(masses)), radii[0].min(radii[1]), surface)
+}
+
+/// A pair that meets, slides and rolls, and parts: it never pulls, friction stays within Coulomb's cone, nothing is given back that was
+/// taken, in the end no energy is left in it, and turned axes change nothing.
+///
+/// - `by_remainder`: whether friction is booked as what is left of the work of mean forces
+pub(crate) fn contact<L: ContactLaw>(
+    draw: &mut Draw,
+    (law, radius, surface): (L, f64, ContactParameters),
+    by_remainder: bool,
+) -> Held {
+    let deepest = radius * draw.over_decades(1e-6, 1e-3);
+    let turn = draw.turn();
+    let normal = draw.vector().normalize();
+    let across = draw.vector() * (draw.over_decades(0.01, 10.0) * deepest);
+    let rolling = draw.vector() * (draw.over_decades(0.01, 10.0) * deepest / radius);
+    let steps = 400;
+    // One unit of time from the first approach to the parting; dampers see the duration of a natural contact.
+    let (normal_stiffness, _) = law.stiffness(0.5 * deepest);
+    let mass = 4.0 / 3.0 * PI * radius.powi(3) * 2000.0;
+    let dt = PI * (mass / normal_stiffness).sqrt() / f64::from(steps);
+    let overlap = |step: i32| deepest * (1.1 * (PI * f64::from(step) / f64::from(steps)).sin() - 0.1);
+    let (mut memory, mut turned_memory) = (L::Memory::default(), L::Memory::default());
+    let (mut work, mut taken, mut largest) = (0.0, 0.0, 0.0f64);
+    let mut before = ContactForce::default();
+    for step in 1..=steps {
+        let approach = (overlap(step) - overlap(step - 1)) / dt;
+        let phase = (7.0 * f64::from(step) / f64::from(steps)).sin() / (dt * f64::from(steps));
+        let flat = across - normal * across.dot(&normal);
+        let velocity = flat * phase - normal * approach;
+        let motion = PairMotion { normal, overlap: overlap(step), velocity, spin: rolling * phase, dt };
+        let force = law.force(&motion, &mut memory);
+        let turned =
+            PairMotion { normal: turn * normal, velocity: turn * velocity, spin: turn * motion.spin, ..motion };
+        let force_turned = law.force(&turned, &mut turned_memory);
+
+        let size = force.on_second.norm();
+        let along = force.on_second.dot(&normal);
+        let tangential = (force.on_second - normal * along).norm();
+        hold(along >= -1e-12 * size, || format!("pulls with {along} at step {step}"))?;
+        let within = tangential <= surface.friction * along * (1.0 + 1e-9) + 1e-12 * size;
+        hold(within, || format!("friction {tangential} of {along} at step {step}, coefficient {}", surface.friction))?;
+        let scale = force.stored.max(before.stored).max(largest);
+        hold(force.stored >= 0.0, || format!("stores {}", force.stored))?;
+        // A spring across or against rolling that turns over within a step, while what it can bear shrinks, has a mean force that does work
+        // the other way: 1e-5 of the largest energy. The slip of linear springs takes it as none.
+        let rounding = if by_remainder || surface.rolling_friction > 0.0 { 2e-5 } else { 1e-9 };
+        hold(force.friction >= -rounding * scale, || {
+            format!("friction gives {} of {scale} back at step {step}", force.friction)
+        })?;
+        let difference = (turn * force.on_second - force_turned.on_second).norm();
+        hold(difference <= 1e-6 * (size + normal_stiffness * deepest), || {
+            format!("turned axes change {difference} of {size}")
+        })?;
+
+        let mean = 0.5 * (before.on_second + force.on_second).dot(&velocity);
+        let couple = 0.5 * (before.couple_on_second + force.couple_on_second).dot(&motion.spin);
+        work -= (mean + couple) * dt;
+        taken += force.friction + force.damping;
+        largest = largest.max(force.stored).max(taken);
+        before = force;
+    }
+    hold(before.stored == 0.0 && before.on_second.norm() == 0.0, || "holds energy after parting".into())?;
+    hold(taken >= -1e-9 * largest, || format!("gives {taken} back"))?;
+    hold((work - taken).abs() <= 0.03 * largest, || format!("took {taken} of {work}, {largest} at most"))
+}
+
+/// A flat contact, with its full stiffness from the first touch.
+pub(crate) fn hertz_flat(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
+    let (young, nu, radii, masses) = bodies(draw);
+    let surface = surface(draw);
+    let (radius, mass) = (radii[0].min(radii[1]), masses[0].min(masses[1]));
+    let normal = young * radius;
+    (Hertz::flat([normal, normal / (2.0 * (1.0 + nu))], surface, radius, mass), radius, surface)
+}
+
+/// Restitution falls from one as damping grows, stays above zero, and its inverse gives it back.
+pub(crate) fn restitution(draw: &mut Draw) -> Held {
+    let ratio = draw.over_decades(1e-6, 4.0);
+    let found = restitution_of_damping(ratio);
+    hold(found > 0.0 && found < 1.0, || format!("{ratio}: {found}"))?;
+    let more = restitution_of_damping(ratio * 1.001);
+    hold(more < found, || format!("{ratio}: {more} with more damping, {found}"))?;
+    let back = restitution_of_damping(damping_of_restitution(found));
+    hold((back - found).abs() < 1e-9, || format!("{found} comes back as {back}"))
+}
