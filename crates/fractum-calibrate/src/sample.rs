@@ -41,7 +41,7 @@ impl Sample {
     pub fn new(packing: Packing, coordination: f64, convention: Convention) -> Result<Self, CalibrateError> {
         let network = bond(&packing, coordination, convention)?;
         let mean_radius = packing.mean_radius();
-        let section = BeamSection::new(1.0, 0.5 * mean_radius)?;
+        let section = BeamSection::new(1.0, 0.5 * mean_radius).map_err(DemError::from)?;
         let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;
         let fraction = interior_fraction(&packing).unwrap_or(RANDOM_CLOSE);
         Ok(Sample { packing, network, convention, lattice, mean_radius, fraction })

@@ -2,7 +2,6 @@
 
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Plane, Softening, Solid, fields};
 use fractum_math::{Mat3, Vec3};
-use nalgebra::{Rotation3, Vector3};
 
 use super::draw::{Draw, Held, hold};
 
@@ -38,11 +37,7 @@ impl Cell {
         let elastic = Elastic { density: 2400.0, young_modulus, poisson_ratio: draw.between(0.0, 0.49) };
         let nu = elastic.poisson_ratio;
         let strength = young_modulus * draw.over_decades(1e-6, 1e-3);
-        let axes = if in_plane {
-            Rotation3::from_axis_angle(&Vector3::z_axis(), draw.between(0.0, 6.0)).into_inner()
-        } else {
-            draw.turn()
-        };
+        let axes = if in_plane { draw.turn_in_plane() } else { draw.turn() };
         let size = draw.over_decades(1e-4, 10.0);
         let corner = |corner: &[f64; 3]| {
             let moved = Vec3::from(*corner) + 0.15 * draw.vector();
