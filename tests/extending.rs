@@ -137,7 +137,7 @@ fn additions_touch_as_many_files_as_the_document_says() {
         assert!(row.ends_with(&format!("| {sources} | {documents} | {tests} |")), "{section}: {files:?}\n{row}");
     }
     // What it quotes of the toy in the tree.
-    let toy = fs::read_to_string(root().join("crates/fractum-dem/src/bond/law/softening_spring.rs")).unwrap();
+    let toy = fs::read_to_string(root().join("crates/fractum-dem/src/bond/softening_spring.rs")).unwrap();
     let quoted = document.split("```").nth(1).and_then(|block| block.strip_prefix("rust\n")).unwrap();
     assert!(toy.contains(quoted), "{quoted}");
 }
@@ -212,8 +212,21 @@ fn the_compiler_takes_all_steps_of_the_document() {
     cargo(&["check", "--workspace", "--tests"]);
     if std::env::var("FRACTUM_EXTEND").is_ok_and(|value| value == "run") {
         cargo(&["test", "--release", "--workspace", "--test", "case", "--test", "verification"]);
-        for part in ["fractum-dem", "fractum-fem", "fractum-scene"] {
+        for part in ["fractum-kernels", "fractum-dem", "fractum-fem", "fractum-scene"] {
             cargo(&["test", "--release", "--lib", "-p", part]);
         }
     }
+}
+
+/// Laws are functions of plain values: they need no memory to allocate, no files and no threads, nor the standard library's `f64`.
+#[test]
+fn the_kernels_need_no_standard_library() {
+    let mut command = Command::new(env!("CARGO"));
+    command.args(["check", "--package", "fractum-kernels", "--no-default-features", "--offline", "--quiet"]);
+    command.current_dir(root()).env("CARGO_TARGET_DIR", Path::new(env!("CARGO_TARGET_TMPDIR")).join("../without-std"));
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !text.contains("warning"), "{text}");
+    let page = fs::read_to_string(root().join("crates/fractum-kernels/src/lib.rs")).unwrap();
+    assert!(page.contains("#![cfg_attr(not(any(feature = \"std\", test)), no_std)]"));
 }

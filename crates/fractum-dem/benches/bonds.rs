@@ -102,8 +102,9 @@ fn step_under(bencher: divan::Bencher, side: usize, law: AnyBondLaw) {
 #[divan::bench(args = [22, 47], sample_count = 20)]
 fn static_product(bencher: divan::Bencher, side: usize) {
     let (position, pairs) = body(side);
-    let lattice = BeamSection::new(1e9, 0.3).and_then(|section| Lattice::new(&position, &pairs, section, 0.5));
-    let Ok(lattice) = lattice else { return };
+    let section = BeamSection::new(1e9, 0.3).ok();
+    let lattice = section.map(|section| Lattice::new(&position, &pairs, section, 0.5));
+    let Some(Ok(lattice)) = lattice else { return };
     let state: Vec<Dof6> = (0..position.len()).map(|i| std::array::from_fn(|d| ((6 * i + d) as f64).sin())).collect();
     bencher.counter(divan::counter::ItemsCount::new(pairs.len())).bench_local(|| lattice.internal(&state));
 }

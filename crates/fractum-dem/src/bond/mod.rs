@@ -14,8 +14,6 @@ mod separating;
 mod softening_spring;
 mod space_cells;
 mod subdomain;
-#[cfg(test)]
-mod tests;
 
 pub use fractum_kernels::bond::{
     BadLaw, BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, Crushing,

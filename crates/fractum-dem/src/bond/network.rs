@@ -440,3 +440,6 @@ fn add_stiffness(k: &mut Matrix6<f64>, n: &Vec3, l: f64, bond: &BondStiffness) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,12 +18,12 @@ pub(crate) fn beam(draw: &mut Draw) -> (BeamSection, f64) {
 /// An interface with softening, friction and plastic compression, and a strain that damages it in most draws.
 pub(crate) fn interface(draw: &mut Draw, failure: InterfaceFailure) -> (LocalBond, f64) {
     let (young_modulus, strain) = (draw.over_decades(1e6, 1e12), draw.over_decades(1e-6, 1e-3));
-    let mut strength = |draw: &mut Draw| {
+    let strength = |draw: &mut Draw| {
         let given = young_modulus * strain * draw.over_decades(0.1, 10.0);
         draw.one_of(&[given, given, given, 0.0, f64::INFINITY])
     };
     let (tensile_strength, shear_strength) = (strength(draw), strength(draw));
-    let mut slope = |draw: &mut Draw| {
+    let slope = |draw: &mut Draw| {
         let given = draw.over_decades(0.01, 100.0);
         draw.one_of(&[given, given, f64::INFINITY])
     };

@@ -1,10 +1,12 @@
 //! Interfaces between two particles: what a network of one such bond does.
 
-use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
+use fractum_kernels::bond::{BondForces, Crushing, InterfaceFailure, LocalBond, Separation};
+use fractum_kernels::contact::{ContactMemory, Linear, PairMotion, Rolling};
 use fractum_math::{Rotation, Vec3};
 use proptest::prelude::*;
 
-use super::*;
+use super::BondNetwork;
+use crate::bond::{BondGraph, Bonds};
 use crate::particles::Particles;
 
 const LENGTH: f64 = 0.95;
