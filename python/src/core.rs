@@ -7,11 +7,11 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use fractum::{Failure, Input, Options, Simulation, cache_of_user, load};
+use fractum_case::model::ProbeKind;
 use fractum_fem::fields;
-use fractum_io::case::model::ProbeKind;
-use fractum_io::summary::hash_text;
-use fractum_io::warning::Warning;
 use fractum_math::Vec3;
+use fractum_output::summary::hash_text;
+use fractum_output::warning::Warning;
 use fractum_scene::{CountKind, EnergyKind, Population, Scene};
 use pyo3::buffer::PyBuffer;
 use pyo3::prelude::*;
@@ -258,7 +258,7 @@ impl Core {
     /// Names and units of the probes that are columns of the history.
     fn probes(&self, py: Python<'_>) -> PyResult<Vec<(String, String)>> {
         self.with(py, |simulation| {
-            let column = |probe: &&fractum_io::case::model::Probe| match &probe.kind {
+            let column = |probe: &&fractum_case::model::Probe| match &probe.kind {
                 ProbeKind::Expression(expression) => !expression.scalar,
                 _ => true,
             };

@@ -14,7 +14,7 @@ mod watch;
 use std::path::PathBuf;
 
 use fractum::{Options, cache_of_user};
-use fractum_io::summary::Status;
+use fractum_output::summary::Status;
 use pyo3::prelude::*;
 
 use crate::core::Core;

@@ -1,19 +1,13 @@
-//! Bonded bodies of a case made ready: packed or read, bonded, calibrated.
+//! Bonded bodies made ready: packed or read, bonded, calibrated.
 
 mod interfaces;
 mod strengths;
 
 use std::time::Instant;
 
-use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Micro, Sample, prepare, suitable_coordination};
-use fractum_dem::CrackFaces;
-use fractum_io::build::PreparedBody;
-use fractum_io::case::model::{
-    BodyKind, BondLawKind, BondedBody, BondedShape, Case, Material, PackingSource, ParticleSize,
-};
-use fractum_io::case::{Diagnostic, Diagnostics, Place, Spanned};
-use fractum_io::warning::Code;
+use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Sample, prepare, suitable_coordination};
 use fractum_mesh::{Mesh, topology};
+use fractum_output::warning::Code;
 use fractum_pack::{
     Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackProgress, PackSize, PackSpec, Packing,
     pack_certified, read_stl, regular,
@@ -21,8 +15,12 @@ use fractum_pack::{
 use fractum_scene::BondFracture;
 use serde::Serialize;
 
+use crate::asked::{
+    At, BondLawKind, BondedRequest, BondedSubstance, Doubt, Fault, PackingRequest, ParticleSize, Shape,
+};
+use crate::body::PreparedBody;
 use crate::cache::{Cache, key};
-use crate::region::{Region, region};
+use crate::region::{Region, Space, region};
 pub use interfaces::InterfaceReport;
 pub use strengths::FoundStrengths;
 
@@ -81,51 +79,31 @@ pub enum Joints {
     Interfaces(InterfaceReport),
 }
 
-/// All bodies of particles of a case.
-#[derive(Default)]
-pub struct BondedBodies {
-    /// What the scene is built from, in the order of the case.
-    pub prepared: Vec<PreparedBody>,
-    /// What the plan says of them.
-    pub reports: Vec<BondedReport>,
-    /// Doubts that do not keep them from running.
-    pub warnings: Vec<Diagnostic>,
+/// A bonded body that was made.
+pub struct MadeBody {
+    /// What the scene is built from.
+    pub body: PreparedBody,
+    /// What the plan says of it.
+    pub report: BondedReport,
+    /// Doubts that do not keep it from running.
+    pub doubts: Vec<Doubt>,
     /// What took how long, for the log.
-    pub timings: Vec<String>,
+    pub timing: Option<String>,
 }
 
-/// Makes the bodies of particles of a case ready.
+/// Makes a bonded body ready.
 ///
 /// - `tell`: called with what is being done, again and again while it takes long
 ///
 /// # Errors
-/// Everything that cannot be packed, bonded or calibrated, with its place.
-pub fn prepare_bodies(
-    case: &Case,
+/// What cannot be packed, bonded or calibrated.
+pub fn prepare_bonded(
+    asked: &BondedRequest<'_>,
     mesh: &Mesh,
     cache: &Cache,
     tell: &dyn Fn(&str),
-) -> Result<BondedBodies, Diagnostics> {
-    let mut all = BondedBodies::default();
-    let mut errors = Vec::new();
-    for body in &case.bodies {
-        let bonded = match &body.kind {
-            BodyKind::Bonded(bonded) => bonded,
-            BodyKind::Particles(loose) => {
-                match crate::loose::prepare(loose, &case.materials[loose.material]) {
-                    Ok(prepared) => all.prepared.push(prepared),
-                    Err(error) => errors.push(*error),
-                }
-                continue;
-            }
-            _ => continue,
-        };
-        let maker = Maker { case, mesh, cache, tell, name: &body.name, bonded };
-        if let Err(error) = maker.make(&mut all) {
-            errors.push(*error);
-        }
-    }
-    if errors.is_empty() { Ok(all) } else { Err(Diagnostics(errors)) }
+) -> Result<MadeBody, Fault> {
+    Maker { mesh, cache, tell, asked }.make()
 }
 
 /// What decides a packing.
@@ -150,46 +128,43 @@ struct BeamsKey {
 }
 
 struct Maker<'a> {
-    case: &'a Case,
     mesh: &'a Mesh,
     cache: &'a Cache,
     tell: &'a dyn Fn(&str),
-    name: &'a Spanned<String>,
-    bonded: &'a BondedBody,
+    asked: &'a BondedRequest<'a>,
 }
 
 impl Maker<'_> {
-    fn make(&self, all: &mut BondedBodies) -> Result<(), Box<Diagnostic>> {
+    fn make(&self) -> Result<MadeBody, Fault> {
         let start = Instant::now();
         let region = self.region()?;
         let (packing, packing_from) = self.packing(region.as_ref())?;
         let packed = Instant::now();
+        let mut doubts = Vec::new();
         if self.arrangement() == Arrangement::Random {
-            all.warnings.extend(self.check_packing(&packing, packing_from)?);
+            doubts.extend(self.check_packing(&packing, packing_from)?);
         }
-        if self.bonded.law != BondLawKind::CohesiveBeam {
-            return self.make_interfaces(packing, packing_from, region, all);
+        if self.asked.law != BondLawKind::CohesiveBeam {
+            let (body, report) = self.make_interfaces(packing, packing_from, region)?;
+            return Ok(MadeBody { body, report, doubts, timing: None });
         }
-        let material = self.material();
         let (made, beams_from, coordination) = self.bond(packing)?;
-        let faces = CrackFaces { friction: material.contact.friction, damping_ratio: material.contact.damping_ratio };
-        let fracture = match &material.fracture {
-            Some(failure) => {
-                Some(self.strengths(&failure.value, &made.sample, made.beams.micro, coordination, faces)?)
-            }
+        let faces = self.material().faces;
+        let fracture = match &self.material().strength {
+            Some(strength) => Some(self.strengths(strength, &made.sample, made.beams.micro, coordination)?),
             None => None,
         };
-        all.warnings.extend(fracture.as_ref().and_then(|found| self.doubt_strength(found)));
+        doubts.extend(fracture.as_ref().and_then(|found| self.doubt_strength(found)));
         let done = Instant::now();
-        all.timings.push(format!(
+        let timing = format!(
             "{}: packing {:.2} s, bonds and beams {:.2} s",
-            self.name.value,
+            self.asked.name,
             (packed - start).as_secs_f64(),
             (done - packed).as_secs_f64()
-        ));
+        );
         let joints = Joints::Beams(made.beams, beams_from);
         let mass = made.particles.mass.iter().sum();
-        all.reports.push(BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) });
+        let report = BondedReport { fracture, ..self.report(&made.sample, mass, packing_from, joints) };
         let (fraction, volume) = (made.sample.fraction, made.sample.measured_volume());
         let breaks = |found: FoundStrengths| BondFracture {
             criterion: Some(found.criterion),
@@ -197,7 +172,7 @@ impl Maker<'_> {
             volume,
             strength_factors: Vec::new(),
         };
-        all.prepared.push(PreparedBody {
+        let body = PreparedBody {
             fraction,
             fracture: fracture.map(breaks),
             law: made.sample.lattice.section().into(),
@@ -207,35 +182,34 @@ impl Maker<'_> {
             shift_to_walls: made.sample.packing.shift_to_walls(),
             walls: made.sample.packing.walls,
             replaced: region.map_or_else(Vec::new, |region| region.elements),
-        });
-        Ok(())
+        };
+        Ok(MadeBody { body, report, doubts, timing: Some(timing) })
     }
 
     /// Says what is being done, for what takes long.
     fn tell(&self, what: &str) {
-        (self.tell)(&format!("{}: {what}", self.name.value));
+        (self.tell)(&format!("{}: {what}", self.asked.name));
     }
 
-    fn material(&self) -> &Material {
-        &self.case.materials[self.bonded.material]
+    fn material(&self) -> &BondedSubstance {
+        &self.asked.material
     }
 
     /// Refuses a packing that misses its targets; warns of one that the user gave.
-    fn check_packing(&self, packing: &Packing, from: Origin) -> Result<Option<Diagnostic>, Box<Diagnostic>> {
+    fn check_packing(&self, packing: &Packing, from: Origin) -> Result<Option<Doubt>, Fault> {
         let Err(error) = Certificate::of(packing).check() else { return Ok(None) };
         if from != Origin::Given {
-            let wrong = self.refuse(&self.name.place, format!(": {error}"));
-            return Err(Box::new(wrong.remedy(REFUSED)));
+            return Err(Fault::new(At::Body, error).remedy(REFUSED));
         }
-        let warning = Diagnostic::warning(Code::Packing, &self.name.place, format!(": {error}"));
-        Ok(Some(warning.remedy("fractum pack shows the whole certificate")))
+        let remedy = "fractum pack shows the whole certificate";
+        Ok(Some(Doubt { code: Code::Packing, found: error.to_string(), remedy }))
     }
 
     /// Bonds a packing with beams that are given, kept or found now, to the coordination that it returns.
-    fn bond(&self, packing: Packing) -> Result<(fractum_calibrate::BondedBody, Origin, f64), Box<Diagnostic>> {
-        let (material, convention) = (self.material(), self.bonded.convention);
-        let coordination = match &self.bonded.coordination {
-            Some(coordination) => coordination.value,
+    fn bond(&self, packing: Packing) -> Result<(fractum_calibrate::BondedBody, Origin, f64), Fault> {
+        let (material, convention) = (self.material(), self.asked.convention);
+        let coordination = match self.asked.coordination {
+            Some(coordination) => coordination,
             None => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
         };
         let beams_key = key(&BeamsKey {
@@ -245,11 +219,7 @@ impl Maker<'_> {
             young_modulus: material.young_modulus,
             poisson_ratio: material.poisson_ratio,
         });
-        let given = material.bonds.as_ref().map(|bonds| {
-            let (radius_ratio, young_modulus) = (bonds.value.radius_ratio, bonds.value.young_modulus);
-            Beams::given(Micro { radius_ratio, young_modulus })
-        });
-        let (beams, from) = match given {
+        let (beams, from) = match material.beams.map(Beams::given) {
             Some(beams) => (Some(beams), Origin::Given),
             None => match self.cache.find("beams", beams_key, |bytes| postcard::from_bytes(bytes).ok()) {
                 Some(beams) => (Some(beams), Origin::Cached),
@@ -279,7 +249,7 @@ impl Maker<'_> {
     fn report(&self, sample: &Sample, mass: f64, packing: Origin, joints: Joints) -> BondedReport {
         let network = &sample.network;
         BondedReport {
-            name: self.name.value.clone(),
+            name: self.asked.name.to_owned(),
             packing,
             particles: sample.packing.len(),
             mean_radius: sample.mean_radius,
@@ -287,7 +257,7 @@ impl Maker<'_> {
             bonds: network.pairs.len(),
             coordination_all: network.coordination_all,
             coordination_interior: network.coordination_interior,
-            convention: self.bonded.convention,
+            convention: self.asked.convention,
             joints,
             walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
             fracture: None,
@@ -295,52 +265,49 @@ impl Maker<'_> {
     }
 
     fn arrangement(&self) -> Arrangement {
-        match &self.bonded.packing {
-            PackingSource::Shape { arrangement, .. } => *arrangement,
-            PackingSource::File(_) => Arrangement::Random,
+        match &self.asked.packing {
+            PackingRequest::Fill { arrangement, .. } => *arrangement,
+            PackingRequest::File(_) => Arrangement::Random,
         }
     }
 
     /// What it takes the place of.
-    fn region(&self) -> Result<Option<Region>, Box<Diagnostic>> {
-        let (Some(replaces), PackingSource::Shape { shape, .. }) = (&self.bonded.replaces, &self.bonded.packing) else {
+    fn region(&self) -> Result<Option<Region>, Fault> {
+        let (Some(solid), PackingRequest::Fill { shape, .. }) = (self.asked.replaces, &self.asked.packing) else {
             return Ok(None);
         };
-        let domain = match &shape.value {
-            BondedShape::Group(_) => None,
-            other => Some(self.domain(other).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?),
+        let space = match shape {
+            Shape::Group(name) => Space::Group(name),
+            other => Space::Domain(self.domain(other)?),
         };
-        region(self.case, self.mesh, replaces, shape, domain.as_ref()).map(Some)
+        region(self.mesh, solid, &space).map(Some)
     }
 
     /// Reads the packing, finds it among the kept ones, or makes it.
     ///
     /// - `region`: what is filled instead of the shape
-    fn packing(&self, region: Option<&Region>) -> Result<(Packing, Origin), Box<Diagnostic>> {
-        let (shape, size, dispersion, seed) = match &self.bonded.packing {
-            PackingSource::File(file) => {
-                let read = Packing::from_bytes(&file.bytes);
-                let found = |error| self.refuse(&file.name.place, format!("= \"{}\": {error}", file.name.value));
-                return read.map(|packing| (packing, Origin::Given)).map_err(found);
+    fn packing(&self, region: Option<&Region>) -> Result<(Packing, Origin), Fault> {
+        let (shape, size, dispersion, seed) = match &self.asked.packing {
+            PackingRequest::File(bytes) => {
+                let read = Packing::from_bytes(bytes).map_err(|error| Fault::new(At::File, error));
+                return read.map(|packing| (packing, Origin::Given));
             }
-            PackingSource::Shape { shape, size, dispersion, seed, .. } => (shape, size, *dispersion, *seed),
+            PackingRequest::Fill { shape, size, dispersion, seed, .. } => (shape, *size, *dispersion, *seed),
         };
         let domain = match region {
             Some(region) => region.domain.clone(),
-            None => self.domain(&shape.value).map_err(|(place, error)| self.refuse(&place, format!(": {error}")))?,
+            None => self.domain(shape)?,
         };
         if let (
             Arrangement::Cartesian | Arrangement::Staggered,
             Domain::Box { lower, upper },
             ParticleSize::Radius(radius),
-        ) = (self.arrangement(), &domain, size.value)
+        ) = (self.arrangement(), &domain, size)
         {
             let made = regular(*lower, *upper, radius, self.arrangement());
-            return made
-                .map(|packing| (packing, Origin::Made))
-                .map_err(|error| self.refuse(&size.place, format!(": {error}")));
+            return made.map(|packing| (packing, Origin::Made)).map_err(|error| Fault::new(At::Size, error));
         }
-        let (count, radius) = match size.value {
+        let (count, radius) = match size {
             ParticleSize::Count(count) => (Some(count), None),
             ParticleSize::Radius(radius) => (None, Some(radius)),
         };
@@ -349,7 +316,7 @@ impl Maker<'_> {
         if let Some(packing) = self.cache.find("fpk", packing_key, |bytes| Packing::from_bytes(bytes).ok()) {
             return Ok((packing, Origin::Cached));
         }
-        let size_of = match size.value {
+        let size_of = match size {
             ParticleSize::Count(count) => PackSize::Count(count as usize),
             ParticleSize::Radius(radius) => PackSize::MeanRadius(radius),
         };
@@ -357,49 +324,35 @@ impl Maker<'_> {
         self.tell("packing");
         let progress = |progress: PackProgress| self.tell(&progress.to_string());
         let (packing, _) = pack_certified(&spec, &progress).map_err(|error| {
-            let place = match error {
-                PackError::TooSmall { .. } | PackError::Count(_) => &size.place,
-                _ => &shape.place,
+            let at = match error {
+                PackError::TooSmall { .. } | PackError::Count(_) => At::Size,
+                _ => At::Shape,
             };
-            self.refuse(place, format!(": {error}"))
+            Fault::new(at, error)
         })?;
         self.cache.keep("fpk", packing_key, &packing.to_bytes());
         Ok((packing, Origin::Made))
     }
 
-    fn domain(&self, shape: &BondedShape) -> Result<Domain, (Place, PackError)> {
-        Ok(match shape {
-            BondedShape::Box { point, size } => Domain::Box { lower: *point, upper: point + size },
-            BondedShape::Cylinder { point, length, radius } => {
-                Domain::Cylinder { start: *point, length: *length, radius: *radius }
-            }
-            BondedShape::Sphere { point, radius } => Domain::Sphere { centre: *point, radius: *radius },
-            BondedShape::Group(group) => {
-                let surface = group_surface(self.mesh, Some(&group.value));
-                Domain::Surface(surface.map_err(|error| (group.place.clone(), error))?)
-            }
-            BondedShape::Stl { file, unit } => {
-                let surface = read_stl(&file.bytes, *unit);
-                Domain::Surface(surface.map_err(|error| (file.name.place.clone(), error))?)
-            }
-        })
-    }
-
-    fn refuse(&self, place: &Place, found: String) -> Box<Diagnostic> {
-        Box::new(Diagnostic::error(place, found))
-    }
-
-    /// Where in the case the reason for an error stands.
-    fn wrong(&self, error: &CalibrateError) -> Box<Diagnostic> {
-        let material = &self.case.materials[self.bonded.material].name.place;
-        let coordination = self.bonded.coordination.as_ref().map(|c| &c.place);
-        let place = match error {
-            CalibrateError::Material { .. } => material,
-            CalibrateError::PoissonRange { .. } => coordination.unwrap_or(material),
-            CalibrateError::Pack(PackError::Coordination { .. }) => coordination.unwrap_or(&self.name.place),
-            _ => &self.name.place,
+    fn domain(&self, shape: &Shape<'_>) -> Result<Domain, Fault> {
+        let surface = match shape {
+            Shape::Plain(domain) => return Ok(domain.clone()),
+            Shape::Group(group) => group_surface(self.mesh, Some(group)),
+            Shape::Stl { bytes, unit } => read_stl(bytes, *unit),
         };
-        self.refuse(place, format!(": {error}"))
+        surface.map(Domain::Surface).map_err(|error| Fault::new(At::Source, error))
+    }
+
+    /// What of the request is the reason for an error.
+    fn wrong(&self, error: &CalibrateError) -> Fault {
+        let coordination = self.asked.coordination.map(|_| At::Coordination);
+        let at = match error {
+            CalibrateError::Material { .. } => At::Material,
+            CalibrateError::PoissonRange { .. } => coordination.unwrap_or(At::Material),
+            CalibrateError::Pack(PackError::Coordination { .. }) => coordination.unwrap_or(At::Body),
+            _ => At::Body,
+        };
+        Fault::new(at, error)
     }
 }
 

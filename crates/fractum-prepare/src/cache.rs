@@ -5,7 +5,7 @@
 use std::fs;
 use std::path::PathBuf;
 
-use fractum_io::atomic;
+use fractum_output::atomic;
 
 /// A folder of entries named by their kind and key. Without a folder nothing is found and nothing kept.
 #[derive(Clone, Debug, Default)]

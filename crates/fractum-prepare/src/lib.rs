@@ -1,38 +1,38 @@
-//! Bodies of a case made ready for the scene, and the solver chosen where the case leaves it open.
+//! Bodies of particles made ready for a scene.
 //!
-//! - [`prepare_bodies`]: bonded bodies are packed (or their packing is read), bonded, calibrated to the material and given
-//!   their strengths; clouds of loose particles are filled or read. What takes long is kept in a [`Cache`].
-//! - [`facets`]: closed surfaces of rigid bodies from STL files
-//! - [`check_memory`]: bodies larger than the memory are refused before they are made
-//! - [`choose`] and [`compare`]: motion or equilibrium, by what each would cost
+//! - [`prepare_bonded`]: a bonded body is packed (or its packing is read), bonded, calibrated to the material and given its
+//!   strengths. What takes long is kept in a [`Cache`].
+//! - [`prepare_loose`]: a cloud of loose particles is filled or read
 //!
-//! Nothing moves here: the scene is built by `fractum-io` from what this crate returns, and stepped by `fractum-scene`.
+//! Materials, shapes and the bytes of files come in; a [`PreparedBody`] comes out, or a [`Fault`] that says what of the request
+//! it is about. Nothing here knows a case, and nothing moves.
 //!
-//! ```no_run
-//! use fractum_io::build::build_scene;
-//! use fractum_io::case::read_case;
-//! use fractum_mesh::Mesh;
-//! use fractum_prepare::{Cache, facets, prepare_bodies};
-//! let case = read_case("cases/bonded-box/tension.toml".as_ref(), &[])?;
-//! let mesh = Mesh::default();
-//! let made = prepare_bodies(&case, &mesh, &Cache::new(Some("cache".into())), &|_| {})?;
-//! let built = build_scene(&case, &mesh, made.prepared, facets(&case)?)?;
-//! # Ok::<(), fractum_io::case::Diagnostics>(())
+//! ```
+//! use fractum_math::Vec3;
+//! use fractum_prepare::{LooseFill, LooseRequest, Region, prepare_loose};
+//! let region = Region::Box { point: Vec3::zeros(), size: Vec3::repeat(1.0) };
+//! let source = LooseFill::Cloud { region: &region, radius: 0.1, dispersion: 0.0, count: Some(20), seed: 1 };
+//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9 }).unwrap();
+//! assert_eq!((made.particles.len(), made.pairs.len()), (20, 0));
 //! ```
 
 #![forbid(unsafe_code)]
 
+mod asked;
+mod body;
 mod bonded;
 mod cache;
-mod choice;
 mod loose;
-mod memory;
 mod region;
 
+pub use asked::{
+    At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces, LooseFill,
+    LooseRequest, PackingRequest, ParticleSize, Region, Shape,
+};
+pub use body::PreparedBody;
 pub use bonded::{
-    BondedBodies, BondedReport, FoundStrengths, InterfaceReport, Joints, Origin, group_surface, prepare_bodies,
+    BondedReport, FoundStrengths, InterfaceReport, Joints, MadeBody, Origin, group_surface, prepare_bonded,
 };
 pub use cache::Cache;
-pub use choice::{PATH_ITERATIONS, choose, compare, solution_time};
-pub use loose::facets;
-pub use memory::{Processes, check_memory};
+pub use fractum_calibrate::Micro;
+pub use loose::prepare_loose;

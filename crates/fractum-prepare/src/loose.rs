@@ -1,45 +1,44 @@
-//! Loose particles and the facets of rigid bodies made ready: clouds filled, files read.
+//! Loose particles made ready: clouds filled, tables read.
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_io::build::{PreparedBody, PreparedFacets};
-use fractum_io::case::model::{BodyKind, Case, FileContent, LooseBody, LooseSource, Material, Region, RigidShape};
-use fractum_io::case::{Diagnostic, Diagnostics, Place};
 use fractum_math::{Vec3, sphere_volume};
-use fractum_pack::{cloud, read_stl};
+use fractum_pack::cloud;
 
-/// The particles of a loose body.
+use crate::asked::{At, Fault, LooseFill, LooseRequest, Region};
+use crate::body::PreparedBody;
+
+/// Makes loose particles ready.
 ///
 /// # Errors
 /// A file that is no table of spheres; a region without room.
-pub(crate) fn prepare(body: &LooseBody, material: &Material) -> Result<PreparedBody, Box<Diagnostic>> {
-    let (position, radius, place) = match &body.source {
-        LooseSource::Table { file, unit } => {
-            let (position, radius) = read_table(file, *unit)?;
-            (position, radius, &file.name.place)
+pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
+    let (position, radius, at) = match asked.source {
+        LooseFill::Table { bytes, unit } => {
+            let (position, radius) = read_table(bytes, unit)?;
+            (position, radius, At::Source)
         }
-        LooseSource::Cloud { region, radius, dispersion, count, seed } => {
-            let most = count.as_ref().map_or(usize::MAX, |count| count.value as usize);
-            let (centres, radii) = fill(&region.value, *radius, *dispersion, most, *seed);
+        LooseFill::Cloud { region, radius, dispersion, count, seed } => {
+            let most = count.map_or(usize::MAX, |count| count as usize);
+            let (centres, radii) = fill(region, radius, dispersion, most, seed);
             match count {
-                Some(count) if centres.len() < most => {
-                    let found = format!("= {}: there is room for {} only", count.value, centres.len());
-                    let note = Diagnostic::error(&count.place, found);
-                    return Err(Box::new(note.remedy("a larger region, smaller particles, or fewer")));
+                Some(_) if centres.len() < most => {
+                    let fault = Fault::new(At::Size, format!("there is room for {} only", centres.len()));
+                    return Err(fault.remedy("a larger region, smaller particles, or fewer"));
                 }
                 None if centres.is_empty() => {
-                    let found = ": no particle of that radius has room in the region";
-                    return Err(Box::new(Diagnostic::error(&region.place, found).remedy("a smaller particle_radius")));
+                    let fault = Fault::new(At::Shape, "no particle of that radius has room in the region");
+                    return Err(fault.remedy("a smaller particle_radius"));
                 }
                 _ => {}
             }
-            (centres, radii, &region.place)
+            (centres, radii, At::Shape)
         }
     };
     let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
-    let wrong = |error: &dyn std::fmt::Display| Box::new(Diagnostic::error(place, format!(": {error}")));
-    let particles = Particles::at_rest(position, radius, volume * material.density).map_err(|e| wrong(&e))?;
+    let particles =
+        Particles::at_rest(position, radius, volume * asked.density).map_err(|error| Fault::new(at, error))?;
     // No bond uses it.
-    let section = BeamSection::new(material.young_modulus, 1.0).map_err(|e| wrong(&e))?;
+    let section = BeamSection::new(asked.young_modulus, 1.0).map_err(|error| Fault::new(at, error))?;
     let (pairs, shares, walls, law) = (Vec::new(), Vec::new(), Vec::new(), section.into());
     Ok(PreparedBody {
         particles,
@@ -81,13 +80,9 @@ fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -
 
 /// Rows of x, y, z and radius, separated by commas, semicolons or blanks; a first row of names and `#` comments are
 /// passed over.
-fn read_table(file: &FileContent, unit: f64) -> Result<(Vec<Vec3>, Vec<f64>), Box<Diagnostic>> {
-    let place: &Place = &file.name.place;
-    let wrong = |found: String| {
-        let note = Diagnostic::error(place, format!("= \"{}\": {found}", file.name.value));
-        Box::new(note.expected("rows of x, y, z, radius"))
-    };
-    let text = std::str::from_utf8(&file.bytes).map_err(|_| wrong("is not text".to_owned()))?;
+fn read_table(bytes: &[u8], unit: f64) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
+    let wrong = |found: String| Fault { expected: "rows of x, y, z, radius", ..Fault::new(At::File, found) };
+    let text = std::str::from_utf8(bytes).map_err(|_| wrong("is not text".to_owned()))?;
     let (mut position, mut radius) = (Vec::new(), Vec::new());
     let mut first = true;
     for (number, line) in (1..).zip(text.lines()) {
@@ -109,27 +104,4 @@ fn read_table(file: &FileContent, unit: f64) -> Result<(Vec<Vec3>, Vec<f64>), Bo
         first = false;
     }
     if position.is_empty() { Err(wrong("holds no particle".to_owned())) } else { Ok((position, radius)) }
-}
-
-/// The facets of the rigid bodies that come from STL files, in the order of the case.
-///
-/// # Errors
-/// Files that hold no closed surface.
-pub fn facets(case: &Case) -> Result<Vec<PreparedFacets>, Diagnostics> {
-    let (mut all, mut errors) = (Vec::new(), Vec::new());
-    for body in &case.bodies {
-        let BodyKind::Rigid(rigid) = &body.kind else { continue };
-        let RigidShape::Stl { file, unit, .. } = &rigid.shape else { continue };
-        match read_stl(&file.bytes, *unit) {
-            Ok(surface) => {
-                let data = surface.data();
-                let points = data.points.iter().map(|&p| p.into()).collect();
-                all.push(PreparedFacets { points, triangles: data.triangles });
-            }
-            Err(error) => {
-                errors.push(Diagnostic::error(&file.name.place, format!("= \"{}\": {error}", file.name.value)));
-            }
-        }
-    }
-    if errors.is_empty() { Ok(all) } else { Err(Diagnostics(errors)) }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use fractum_io::case::model::{BodyKind, BondedShape, Case};
-use fractum_io::case::{Diagnostic, Spanned};
 use fractum_mesh::{Mesh, topology};
 use fractum_pack::{ClosedSurface, Domain};
+
+use crate::asked::{At, Fault};
 
 /// How far a node may lie outside the shape and still count as within, over the size of the mesh.
 const OUTSIDE: f64 = 1e-9;
@@ -20,42 +20,37 @@ pub(crate) struct Region {
     pub domain: Domain,
 }
 
-/// The elements of a solid wholly within a shape.
+/// What elements lie within.
+pub(crate) enum Space<'a> {
+    /// Those of a mesh group.
+    Group(&'a str),
+    /// A part of space.
+    Domain(Domain),
+}
+
+/// The elements of a solid wholly within a space.
 ///
 /// Those that hang on the others by less than a facet, or leave an edge where more than two facets meet, stay with the
 /// solid, so that what is left has a closed surface; of separate parts the largest counts.
 ///
-/// - `domain`: the shape; not used where it is a mesh group
+/// - `solid`: mesh group of the solid
 ///
 /// # Errors
-/// A solid that is not made of tetrahedra; a shape that holds no element wholly.
-pub(crate) fn region(
-    case: &Case,
-    mesh: &Mesh,
-    replaces: &Spanned<String>,
-    shape: &Spanned<BondedShape>,
-    domain: Option<&Domain>,
-) -> Result<Region, Box<Diagnostic>> {
-    let refuse = |found: String, remedy: &str| {
-        Box::new(Diagnostic::error(&replaces.place, format!("= \"{}\": {found}", replaces.value)).remedy(remedy))
-    };
-    let group = case.bodies.iter().find_map(|body| match &body.kind {
-        BodyKind::Solid(solid) if body.name.value == replaces.value => Some(&solid.group.value),
-        _ => None,
-    });
+/// A solid that is not made of tetrahedra; a space that holds no element wholly.
+pub(crate) fn region(mesh: &Mesh, solid: &str, space: &Space<'_>) -> Result<Region, Fault> {
+    let refuse = |found: &dyn ToString, remedy| Fault::new(At::Replaced, found.to_string()).remedy(remedy);
     let of_group = |name: &str| -> BTreeSet<u32> {
         mesh.group(name).iter().flat_map(|group| group.tetrahedra.iter().copied()).collect()
     };
-    let body = group.map(|name| of_group(name)).unwrap_or_default();
+    let body = of_group(solid);
     if body.is_empty() {
-        return Err(refuse("it is not made of tetrahedra".to_owned(), "only a solid in space can be bonded in part"));
+        return Err(refuse(&"it is not made of tetrahedra", "only a solid in space can be bonded in part"));
     }
     let (low, high) = mesh.bounding_box();
     let slack = OUTSIDE * (high - low).norm();
-    let mut inside: BTreeSet<u32> = match (&shape.value, domain) {
-        (BondedShape::Group(name), _) => of_group(&name.value).intersection(&body).copied().collect(),
-        (_, None) => BTreeSet::new(),
-        (_, Some(domain)) => {
+    let mut inside: BTreeSet<u32> = match space {
+        Space::Group(name) => of_group(name).intersection(&body).copied().collect(),
+        Space::Domain(domain) => {
             let within: Vec<bool> = mesh.nodes.iter().map(|x| domain.depth(x) >= -slack).collect();
             let whole = |e: &u32| mesh.tetrahedra[*e as usize].iter().all(|&n| within[n as usize]);
             body.iter().copied().filter(whole).collect()
@@ -73,11 +68,11 @@ pub(crate) fn region(
         });
     }
     if inside.is_empty() {
-        let found = "the shape holds none of its elements wholly".to_owned();
-        return Err(refuse(found, "make the shape larger than a few elements, or the mesh finer there"));
+        let found = "the shape holds none of its elements wholly";
+        return Err(refuse(&found, "make the shape larger than a few elements, or the mesh finer there"));
     }
     let elements: Vec<u32> = inside.into_iter().collect();
-    let surface = closed_surface(mesh, &elements).map_err(|error| refuse(error.to_string(), "choose another shape"))?;
+    let surface = closed_surface(mesh, &elements).map_err(|error| refuse(&error, "choose another shape"))?;
     let (lower, upper) = surface.bounds();
     let boxed = (upper - lower).product();
     let domain = if (surface.volume() / boxed - 1.0).abs() < BOX {

@@ -1,9 +1,8 @@
-use fractum_io::case::{Diagnostic, Diagnostics};
-use fractum_io::checkpoint::CheckpointError;
-use fractum_io::memory::TooLarge;
-use fractum_io::picture::PictureError;
-use fractum_io::warning::Warning;
-use fractum_io::{OutputError, WriteError};
+use fractum_case::{Diagnostic, Diagnostics};
+use fractum_output::checkpoint::CheckpointError;
+use fractum_output::memory::TooLarge;
+use fractum_output::warning::Warning;
+use fractum_output::{OutputError, WriteError};
 use fractum_scene::StepError;
 
 /// Exit codes of the program, for scripts.
@@ -65,8 +64,9 @@ pub enum Failure {
     #[error("interrupted")]
     Interrupted,
     /// A picture could not be drawn.
+    #[cfg(feature = "report")]
     #[error(transparent)]
-    Picture(#[from] PictureError),
+    Picture(#[from] fractum_report::picture::PictureError),
     /// A quantity of the case did not meet its reference.
     #[error("{0}")]
     Unmet(String),
@@ -80,6 +80,18 @@ impl ExitCode {
     }
 }
 
+#[cfg(feature = "report")]
+impl From<fractum_report::ReportError> for Failure {
+    fn from(error: fractum_report::ReportError) -> Self {
+        use fractum_report::ReportError as Error;
+        match error {
+            Error::Input(message) => Failure::input(message),
+            Error::Write(error) => Failure::Write(error),
+            Error::Picture(error) => Failure::Picture(error),
+        }
+    }
+}
+
 impl Failure {
     /// A mistake in the input that has no place in a case file.
     pub fn input(message: impl Into<String>) -> Self {
@@ -89,7 +101,9 @@ impl Failure {
     /// The exit code that tells a script what kind of failure this is.
     pub fn exit_code(&self) -> ExitCode {
         match self {
-            Failure::Input(_) | Failure::Unmet(_) | Failure::Picture(_) => ExitCode::Input,
+            Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
+            #[cfg(feature = "report")]
+            Failure::Picture(_) => ExitCode::Input,
             Failure::Stopped { .. } | Failure::Strict { .. } => ExitCode::Stopped,
             Failure::Elsewhere(code) => *code,
             Failure::Interrupted => ExitCode::Interrupted,

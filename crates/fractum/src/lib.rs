@@ -52,6 +52,7 @@ mod input;
 pub mod output;
 mod phases;
 pub mod plan;
+mod plots;
 mod process;
 pub mod report;
 mod run;
@@ -66,6 +67,7 @@ pub use error::{ExitCode, Failure};
 pub use input::{Input, cache_of_user, load};
 pub use process::interrupt::{clear_interrupt, interrupt, is_interrupted};
 pub use process::ranks::Ranks;
-pub use report::frame_pictures::{Movie, MovieSettings, movie};
+#[cfg(feature = "report")]
+pub use report::{Movie, MovieSettings, movie};
 pub use run::{run, run_shared};
 pub use simulation::{Options, Outcome, Simulation, for_shell};

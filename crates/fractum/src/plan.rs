@@ -14,15 +14,15 @@ use std::fmt;
 use std::path::Path;
 use std::time::Instant;
 
-use fractum_fem::{ElementKind, Kinematics};
-use fractum_io::build::{BuiltScene, TieReport};
-use fractum_io::case::Diagnostic;
-use fractum_io::case::model::{
+use fractum_case::Diagnostic;
+use fractum_case::build::{BuiltScene, TieReport};
+use fractum_case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_io::number::{instant_text, percent, quantity};
+use fractum_fem::{ElementKind, Kinematics};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
+use fractum_output::number::{instant_text, percent, quantity};
 use fractum_prepare::Cache;
 use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
@@ -353,7 +353,7 @@ impl Plan {
     /// Adds what motion and equilibrium would cost.
     pub fn compare_solvers(&mut self, case: &Case, built: &mut BuiltScene) {
         if case.later.is_empty() {
-            for (topic, text) in fractum_prepare::compare(case, built) {
+            for (topic, text) in crate::solver::choice::compare(case, built) {
                 self.add(topic, text);
             }
         }
@@ -401,7 +401,7 @@ fn threads() -> String {
 
 /// Two digits of a time.
 fn significant(time: f64) -> f64 {
-    fractum_io::number::significant(time, 2).parse().unwrap_or(time)
+    fractum_output::number::significant(time, 2).parse().unwrap_or(time)
 }
 
 /// The names of what is so, as a list.

@@ -1,10 +1,11 @@
 //! Simulations that a program drives: forces that it sets, and an end that it chooses.
 
-use crate::common::Workplace;
 use fractum::{Options, Simulation};
-use fractum_io::summary::Status;
 use fractum_math::Vec3;
+use fractum_output::summary::Status;
 use fractum_scene::{EnergyKind, Population};
+
+use crate::common::Workplace;
 
 /// A bar that nothing holds.
 const FREE_BAR: &str = r#"fractum = 1
@@ -93,7 +94,7 @@ fn a_run_that_its_driver_ends_is_complete() {
     assert!(simulation.is_over() && simulation.status() == Some(Status::Completed));
     simulation.step().unwrap();
     assert_eq!(simulation.steps(), 10);
-    let hash = fractum_io::summary::hash_text(simulation.state_hash());
+    let hash = fractum_output::summary::hash_text(simulation.state_hash());
     let outcome = simulation.finish().unwrap();
     assert_eq!((outcome.summary.status, outcome.summary.hashes.state_hash), (Status::Completed, hash));
     assert_eq!(outcome.summary.time.reason, "ended by the program that drives it");
@@ -116,7 +117,7 @@ probes = [
     }
     let folder = simulation.folder().to_owned();
     simulation.finish().unwrap();
-    let history = fractum_io::history::read(&folder.join("history.csv")).unwrap();
+    let history = fractum_output::history::read(&folder.join("history.csv")).unwrap();
     let column = |name: &str| history.column(name).unwrap().0.to_vec();
     let (times, fast, slow) = (column("time"), column("fast"), column("slow"));
     let interval = |time: f64| (time / 3.5e-3 * (1.0 + 1e-12)).floor();

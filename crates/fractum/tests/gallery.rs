@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use fractum::verify::neighbours::{neighbours, unsaid};
 use fractum::verify::{Selection, verify};
 use fractum::{Options, Simulation};
-use fractum_io::beside::{End, Row};
-use fractum_io::case::read_case;
+use fractum_case::read_case;
+use fractum_output::beside::{End, Row};
 
 #[test]
 fn quick_cases_meet_their_references() {

@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use fractum_output::frames::read_collection;
+
 use crate::common::{Workplace, history, resumed, run, summary};
-use fractum_io::vtk::read_collection;
 
 /// A clamped bar of elements and a free bonded box, both heated by 15 K.
 const HOT: &str = r#"fractum = 1

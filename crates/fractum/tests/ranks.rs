@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use fractum::{Failure, Options, Ranks, Simulation, run, run_shared};
-use fractum_io::vtk::{Arrays, read_collection};
+use fractum_output::frames::{read_arrays, read_collection};
 use fractum_parallel::threads;
 
 use crate::common::{BREAKING_BAR, FLYING, Workplace, files_below};
@@ -99,7 +99,7 @@ fn frames_in_pieces_are_those_of_whole_files_whoever_writes_them() {
     for (ours, expected) in in_pieces.iter().zip(&whole) {
         let is_cut = ["solid", "discrete elements"].contains(&expected.name.as_str());
         assert_eq!(ours.file, expected.file.replace(".v", if is_cut { ".pv" } else { ".v" }));
-        let read = |folder: &str, file: &str| Arrays::read(&place.path(folder).join(file), &ARRAYS).unwrap();
+        let read = |folder: &str, file: &str| read_arrays(&place.path(folder).join(file), &ARRAYS).unwrap();
         assert_eq!(read("alone", &ours.file), read("whole", &expected.file), "{}", ours.file);
     }
     for ranks in [2, 3] {

@@ -3,10 +3,11 @@
 use std::fs;
 
 use fractum::{Options, run};
-use fractum_io::vtk::{Arrays, read_collection};
 use fractum_math::Vec3;
 use fractum_mesh::generate::structured_box;
 use fractum_mesh::{Group, Mesh, MshFormat};
+use fractum_output::frames::{read_arrays, read_collection};
+use fractum_vtk::Arrays;
 
 use crate::common::{Workplace, files_below, mesh_bytes};
 use crate::ranks::{interrupted_on_ranks, on_ranks, options};
@@ -155,7 +156,7 @@ fn assert_same_elements(place: &Workplace, folder: &str) {
         assert_eq!(*ours, expected.replace(".v", ".pv"));
         let read = |folder: &str, file: &str| {
             let names = ["Points", "connectivity", "von_mises_stress", "strain"];
-            elements(&Arrays::read(&place.path(folder).join(file), &names).unwrap())
+            elements(&read_arrays(&place.path(folder).join(file), &names).unwrap())
         };
         assert!(read(folder, ours) == read("alone", &expected), "{folder}: {ours}");
     }

@@ -2,8 +2,9 @@
 
 use std::fs;
 
+use fractum_output::frames::read_collection;
+
 use crate::common::{BONDED_BAR, SNAP_BACK, Workplace, history, run, summary};
-use fractum_io::vtk::read_collection;
 
 /// Instants and files of the frames of a part, in the order of the index.
 fn frames(place: &Workplace, part: &str) -> Vec<(f64, String)> {

@@ -4,15 +4,17 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
+use fractum_output::frames::read_arrays;
+use fractum_vtk::Arrays;
+
 use crate::common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, run, summary};
-use fractum_io::vtk::Arrays;
 
 /// Where points were at the start, and how far they have moved.
 const PLACES: [&str; 2] = ["Points", "displacement"];
 
 /// Arrays of a file, by name.
 fn read(path: &Path, names: &[&str]) -> Arrays {
-    let arrays = Arrays::read(path, names).unwrap();
+    let arrays = read_arrays(path, names).unwrap();
     assert!(names.iter().all(|name| !arrays.get(name).is_empty()), "{names:?} of {}", path.display());
     arrays
 }

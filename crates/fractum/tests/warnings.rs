@@ -4,10 +4,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use fractum_io::warning::Code;
 use fractum_math::Vec3;
 use fractum_mesh::generate::{structured_box, structured_rectangle};
 use fractum_mesh::{Group, Mesh, MshFormat};
+use fractum_output::warning::Code;
 use serde_json::Value;
 
 use crate::common::{Workplace, bar, mesh_bytes, resumed, run, summary};

@@ -1,6 +1,6 @@
 //! Contact of what bonds held, and of what they never held.
 
-use fractum_contact::law::{ContactMemory, Linear, PairMotion, Rolling};
+use fractum_contact::law::{ContactMemory, ContactParameters, Linear, PairMotion, Rolling};
 use fractum_math::{Vec3, Work};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +19,13 @@ pub struct CrackFaces {
 impl Default for CrackFaces {
     fn default() -> Self {
         CrackFaces { friction: 0.5, damping_ratio: 0.0 }
+    }
+}
+
+impl From<ContactParameters> for CrackFaces {
+    /// Faces as surfaces of a material: friction and damping, without the couple of rolling.
+    fn from(surface: ContactParameters) -> Self {
+        CrackFaces { friction: surface.friction, damping_ratio: surface.damping_ratio }
     }
 }
 

@@ -1,9 +1,8 @@
 use std::fmt;
 
-use super::error::Fault;
+pub(crate) use fractum_vtk::text::{BYTE_ORDER_MARK, quote};
 
-/// The mark that some programs write at the start of a file in UTF-8.
-pub(crate) const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+use super::error::Fault;
 
 /// Names a record in a message: `node 3 of 14`. Formatting waits until there is something to say.
 #[derive(Clone, Copy)]
@@ -237,15 +236,4 @@ fn parse_digits(digits: &[u8]) -> Option<u64> {
         value = value.checked_mul(10)?.checked_add(digit.into())?;
     }
     Some(value)
-}
-
-/// Bytes of the file as a short, printable quotation.
-pub(crate) fn quote(bytes: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let shown = &bytes[..bytes.len().min(LONGEST)];
-    let text: String = String::from_utf8_lossy(shown)
-        .chars()
-        .map(|c| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c })
-        .collect();
-    format!("`{text}`{}", if bytes.len() > LONGEST { "…" } else { "" })
 }

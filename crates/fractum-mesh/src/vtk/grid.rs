@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use fractum_math::Vec3;
+use fractum_vtk::file::{Array, Document, Section};
 
-use super::document::{Array, Document, Section};
 use crate::tagged::builder::Builder;
 use crate::tagged::element_type::{ElementType, Shape};
 use crate::tagged::error::Fault;

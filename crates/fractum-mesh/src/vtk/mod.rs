@@ -1,16 +1,14 @@
 //! Unstructured grids of VTK (`.vtu`), as ParaView, PyVista, meshio and fractum write them.
 //!
-//! [`xml`] takes tags apart, [`document`] finds the arrays, [`numbers`] decodes them, and [`grid`] makes a
-//! [`crate::tagged::raw::Raw`] mesh of them, whose groups are arrays of zeros and ones.
+//! `fractum-vtk` finds the arrays and decodes them, and [`grid`] makes a [`crate::tagged::raw::Raw`] mesh of them, whose
+//! groups are arrays of zeros and ones.
 
-mod document;
 mod grid;
-mod numbers;
-mod xml;
+
+use fractum_vtk::file::{Document, Fault as VtkFault, Wrong};
 
 use crate::Mesh;
-use crate::tagged::error::MeshError;
-use document::Document;
+use crate::tagged::error::{Fault, MeshError, Problem};
 
 /// Reads an unstructured grid of VTK: arrays as text, as base64 or appended, as they are or compressed by zlib.
 ///
@@ -31,4 +29,18 @@ pub fn read_vtu(bytes: &[u8]) -> Result<Mesh, MeshError> {
         crate::tagged::assemble(grid::raw(&document, bytes)?, bytes)
     };
     read().map_err(|fault| fault.into_error(bytes, false))
+}
+
+impl From<VtkFault> for Fault {
+    fn from(fault: VtkFault) -> Self {
+        let problem = match fault.wrong {
+            Wrong::Empty => Problem::Empty,
+            Wrong::Foreign { found, hint } => Problem::NotGmsh { found, hint },
+            Wrong::Unexpected { found, expected } => Problem::Unexpected { found, expected },
+            Wrong::Truncated(expected) => Problem::Truncated { expected },
+            Wrong::Unsupported(message) => Problem::Unsupported(message),
+            Wrong::Inconsistent(message) => Problem::Inconsistent(message),
+        };
+        Fault { at: fault.at, problem }
+    }
 }

@@ -4,13 +4,12 @@ use std::f64::consts::PI;
 
 use fractum_calibrate::{CalibrateError, Sample};
 use fractum_dem::{CrackFaces, LocalBond, Particles};
-use fractum_io::build::PreparedBody;
-use fractum_io::case::Diagnostic;
-use fractum_io::case::model::{BondLawKind, InterfaceArea, Interfaces, Material};
 use fractum_pack::Packing;
 use fractum_scene::BondFracture;
 
-use super::{BondedBodies, Joints, Maker, Origin};
+use super::{BondedReport, Joints, Maker, Origin};
+use crate::asked::{BondLawKind, BondedSubstance, Fault, InterfaceArea, Interfaces};
+use crate::body::PreparedBody;
 use crate::region::Region;
 
 /// Coordination where none is asked: the polyhedra of [`InterfaceArea::Cells`] then fill a random packing.
@@ -32,24 +31,22 @@ impl Maker<'_> {
         packing: Packing,
         packing_from: Origin,
         region: Option<Region>,
-        all: &mut BondedBodies,
-    ) -> Result<(), Box<Diagnostic>> {
+    ) -> Result<(PreparedBody, BondedReport), Fault> {
         let arrangement = self.arrangement();
         let usual = arrangement.neighbours().unwrap_or(COORDINATION);
-        let coordination = self.bonded.coordination.as_ref().map_or(usual, |asked| asked.value);
-        let mut sample = Sample::new(packing, coordination, self.bonded.convention).map_err(|e| self.wrong(&e))?;
+        let coordination = self.asked.coordination.unwrap_or(usual);
+        let mut sample = Sample::new(packing, coordination, self.asked.convention).map_err(|e| self.wrong(&e))?;
         sample.fraction = arrangement.fraction().unwrap_or(sample.fraction);
         let replaced = region.map_or_else(Vec::new, |region| region.elements);
         let material = self.material();
         // Regular arrangements fill space to their very faces, which are not flat.
         let of_body = || arrangement.fraction().unwrap_or(sample.packing.sphere_volume() / sample.measured_volume());
-        let beside_mean = (self.bonded.law == BondLawKind::LocalNonlocal).then(of_body);
+        let beside_mean = (self.asked.law == BondLawKind::LocalNonlocal).then(of_body);
         let made = with_interfaces(&sample, material, replaced, beside_mean);
         let (body, interfaces) = made.map_err(|e| self.wrong(&e))?;
         let mass = body.particles.mass.iter().sum();
-        all.reports.push(self.report(&sample, mass, packing_from, Joints::Interfaces(interfaces)));
-        all.prepared.push(body);
-        Ok(())
+        let report = self.report(&sample, mass, packing_from, Joints::Interfaces(interfaces));
+        Ok((body, report))
     }
 }
 
@@ -61,11 +58,11 @@ impl Maker<'_> {
 /// Particles without mass.
 fn with_interfaces(
     sample: &Sample,
-    material: &Material,
+    material: &BondedSubstance,
     replaced: Vec<u32>,
     beside_mean: Option<f64>,
 ) -> Result<(PreparedBody, InterfaceReport), CalibrateError> {
-    let mut own = material.interfaces.as_ref().map(|own| own.value).unwrap_or_else(|| Interfaces {
+    let mut own = material.interfaces.unwrap_or_else(|| Interfaces {
         area: InterfaceArea::Cells,
         law: LocalBond::elastic(material.young_modulus, material.poisson_ratio),
     });

@@ -3,14 +3,13 @@
 use fractum_calibrate::crushing::{Crushing, Use, crushing};
 use fractum_calibrate::strength::{BondKind, Pulling, pulling};
 use fractum_calibrate::{CalibrateError, Micro, Sample};
-use fractum_dem::{CrackFaces, FractureCriterion};
-use fractum_io::case::Diagnostic;
-use fractum_io::case::model::{BondFailure, SolverKind};
-use fractum_io::warning::Code;
+use fractum_dem::FractureCriterion;
+use fractum_output::warning::Code;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use super::{Maker, Origin};
+use crate::asked::{BondStrength, Doubt, Fault};
 use crate::cache::key;
 
 /// A criterion with its own strengths, and what bodies bear with it.
@@ -49,17 +48,16 @@ impl Maker<'_> {
     /// The criterion with its own strengths: given, kept, or found by breaking boxes of such bonds in tension, and prisms in compression.
     pub(super) fn strengths(
         &self,
-        failure: &BondFailure,
+        strength: &BondStrength,
         sample: &Sample,
         micro: Micro,
         coordination: f64,
-        faces: CrackFaces,
-    ) -> Result<FoundStrengths, Box<Diagnostic>> {
-        let criterion = failure.criterion;
-        let Some(asked) = failure.tensile_strength else {
+    ) -> Result<FoundStrengths, Fault> {
+        let criterion = strength.criterion;
+        let Some(asked) = strength.tensile_strength else {
             return Ok(FoundStrengths { criterion, origin: Origin::Given, pulling: None, crushing: None });
         };
-        let (convention, dispersion) = (self.bonded.convention, sample.packing.dispersion);
+        let (convention, dispersion) = (self.asked.convention, sample.packing.dispersion);
         let bonds = BondKind { micro, coordination, convention, dispersion };
         let pulling_key = PullingKey { bonds, asked, criterion };
         let (pulled, origin) = self.kept("strength", key(&pulling_key), || {
@@ -68,10 +66,10 @@ impl Maker<'_> {
         })?;
         let scaled = criterion.scaled(pulled.factor);
         let pulled = Some((asked, pulled));
-        let Some(asked) = failure.compressive_strength.filter(|_| criterion.kind().slips) else {
+        let Some(asked) = strength.compressive_strength.filter(|_| criterion.kind().slips) else {
             return Ok(FoundStrengths { criterion: scaled, origin, pulling: pulled, crushing: None });
         };
-        let use_of_body = Use { at_rest: self.case.solver.kind == SolverKind::Static, faces };
+        let use_of_body = Use { at_rest: self.asked.at_rest, faces: self.material().faces };
         let crushing_key = CrushingKey { pulling: pulling_key, asked, use_of_body };
         let tell = |trial: usize, before: Option<f64>| {
             let before = before.map_or(String::new(), |b| format!(", the last one bore {b:.2} of what is asked"));
@@ -86,14 +84,14 @@ impl Maker<'_> {
     }
 
     /// Tells where bodies of such bonds cannot have the strength in compression that is asked.
-    pub(super) fn doubt_strength(&self, found: &FoundStrengths) -> Option<Diagnostic> {
-        let asked = self.material().fracture.as_ref()?.value.compressive_strength?;
+    pub(super) fn doubt_strength(&self, found: &FoundStrengths) -> Option<Doubt> {
+        let asked = self.material().strength?.compressive_strength?;
         let Crushing { reached, .. } = found.crushing.filter(|found| (found.reached / asked - 1.0).abs() > ACCEPTED)?;
-        let what = format!(
-            ": bodies of such bonds bear {reached:.4e} Pa in compression, the nearest to the {asked:.4e} Pa asked beside this tensile strength"
+        let found = format!(
+            "bodies of such bonds bear {reached:.4e} Pa in compression, the nearest to the {asked:.4e} Pa asked beside this tensile strength"
         );
-        let warning = Diagnostic::warning(Code::BondStrength, &self.name.place, what);
-        Some(warning.remedy("change one of the two strengths, Poisson's ratio or the coordination"))
+        let remedy = "change one of the two strengths, Poisson's ratio or the coordination";
+        Some(Doubt { code: Code::BondStrength, found, remedy })
     }
 
     /// What the cache has, or what is found now and kept.
@@ -102,7 +100,7 @@ impl Maker<'_> {
         kind: &str,
         key: u128,
         find: impl FnOnce() -> Result<T, CalibrateError>,
-    ) -> Result<(T, Origin), Box<Diagnostic>> {
+    ) -> Result<(T, Origin), Fault> {
         if let Some(found) = self.cache.find(kind, key, |bytes| postcard::from_bytes(bytes).ok()) {
             return Ok((found, Origin::Cached));
         }

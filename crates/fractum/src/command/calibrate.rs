@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use fractum::{ExitCode, Failure, say};
 use fractum_calibrate::strength_law::{self, READINGS, StrengthLaw, Survey};
 use fractum_calibrate::{Calibration, Request, StrengthCriterion, calibrate, laws, published};
-use fractum_io::atomic;
-use fractum_io::case::{Dimension, parse_quantity};
+use fractum_case::{Dimension, parse_quantity};
+use fractum_output::atomic;
 use fractum_pack::Convention;
 
 use super::shape::{choice, pressure};

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
 use fractum_calibrate::{CalibrateError, Micro, Sample, lab, published};
+use fractum_case::{Dimension, parse_quantity};
 use fractum_dem::Tolerance;
-use fractum_io::atomic;
-use fractum_io::case::{Dimension, parse_quantity};
+use fractum_output::atomic;
 use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
 use super::convergence::{Diagram, Series, svg};

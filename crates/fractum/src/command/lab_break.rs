@@ -6,22 +6,23 @@ use std::time::Instant;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use fractum::output::cracks::{self, Columns};
 use fractum::{Failure, say};
 use fractum_calibrate::{Micro, Sample, lab, published};
+use fractum_case::{Dimension, parse_quantity};
 use fractum_dem::criterion::{BreakMode, CriterionNumbers, EndMoments, FractureCriterion, Level};
 use fractum_dem::{Batch, CrackFaces, Dof6, LoadPoint, Particles, Piece, pieces};
-use fractum_io::case::{Dimension, parse_quantity};
-use fractum_io::fragments::{self, Fragment};
-use fractum_io::picture::{ColourMap, Paint, Picture, Spheres, View};
-use fractum_io::plot::{Axis, Chart, Mark, Series, Style};
-use fractum_io::vtk::{Field, PolyCells, PolyData};
-use fractum_io::{Compression, atomic};
 use fractum_math::Vec3;
+use fractum_output::atomic;
+use fractum_output::fragments::{self, Fragment};
+use fractum_output::frames::cracks::{self, Columns};
 use fractum_pack::Convention;
 use fractum_scene::equivalent_diameter;
+use fractum_vtk::{Compression, Field, PolyCells, PolyData};
 
 use super::shape::{ShapeArguments, choice, pressure};
+
+/// Pictures among the files that are told.
+const PICTURES: &str = if cfg!(feature = "report") { "load.svg, picture.png, " } else { "" };
 
 /// Arguments of `fractum lab break`.
 #[derive(Args)]
@@ -215,7 +216,7 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     write_fragments(&folder.join("fragments.csv"), pieces_at_rest(&sample, &broken, density)?, density)?;
     show(&sample, test, &criterion, &broken);
     say!(
-        "{seconds:.1} s; load.csv, cracks.csv, fragments.csv, broken.vtp, particles.vtp, load.svg, picture.png, summary.json in {}",
+        "{seconds:.1} s; load.csv, cracks.csv, fragments.csv, broken.vtp, particles.vtp, {PICTURES}summary.json in {}",
         folder.display()
     );
     Ok(())
@@ -327,25 +328,8 @@ fn write(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fai
     let columns = Columns { time: "load factor", load: Some(("nominal stress [Pa]", stress)) };
     let table = cracks::table(outcome.cracks.iter().map(|c| (None, c)), columns);
     atomic::write(&folder.join("cracks.csv"), table.as_bytes())?;
-    let axis = |label: &str, unit: &str| Axis::new(label, unit);
-    let chart = Chart {
-        title: "Nominal stress against nominal strain".into(),
-        x: axis("nominal strain", "-"),
-        y: axis("nominal stress", "Pa"),
-        series: vec![Series::new(
-            "load",
-            outcome.curve.iter().map(|p| p.displacement * broken.strain_per_displacement).collect(),
-            outcome.curve.iter().map(|p| p.load * stress).collect(),
-            Style::Line,
-        )],
-        levels: Vec::new(),
-        marks: vec![Mark {
-            label: "peak".into(),
-            x: outcome.peak.displacement * broken.strain_per_displacement,
-            y: broken.strength,
-        }],
-    };
-    atomic::write(&folder.join("load.svg"), chart.to_svg().as_bytes())?;
+    #[cfg(feature = "report")]
+    super::lab_pictures::load(&folder.join("load.svg"), broken)?;
     fields(folder, sample, broken)
 }
 
@@ -383,7 +367,8 @@ fn write_fragments(path: &Path, mut pieces: Vec<Piece>, density: f64) -> Result<
 fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Failure> {
     let outcome = &broken.outcome;
     let points: Vec<[f64; 3]> = sample.packing.position.iter().map(|x| (*x).into()).collect();
-    cracks::polygons(outcome.cracks.iter(), None)?.write(&folder.join("broken.vtp"))?;
+    let polygons = cracks::polygons(outcome.cracks.iter(), None)?;
+    atomic::write(&folder.join("broken.vtp"), &polygons.bytes())?;
     let parts = outcome.graph.parts();
     let fragment: Vec<i32> = parts.of.iter().map(|&p| p as i32).collect();
     let lost = cracks::lost_bonds(points.len(), outcome.cracks.iter());
@@ -403,31 +388,8 @@ fn fields(folder: &Path, sample: &Sample, broken: &lab::Broken) -> Result<(), Fa
         time: None,
     };
     let file = data.pending(Compression::default()).map_err(|error| Failure::Output(error.into()))?;
-    file.write(&folder.join("particles.vtp"))?;
-    picture(&folder.join("picture.png"), sample, &points, &lost)
-}
-
-/// The sample cut open along its middle plane, coloured by the bonds that particles lost.
-fn picture(path: &Path, sample: &Sample, points: &[[f64; 3]], lost: &[f64]) -> Result<(), Failure> {
-    let (lower, upper) = sample.packing.domain.bounds();
-    let size = upper - lower;
-    // Look along the shortest side; x is the axis of cylinders, y the loaded direction.
-    let (direction, up) = if size.x < size.y.min(size.z) {
-        ([1.0, 0.0, 0.0], [0.0, 1.0, 0.0])
-    } else {
-        ([0.0, 0.0, -1.0], [0.0, 1.0, 0.0])
-    };
-    let half = |x: &[f64; 3]| {
-        let middle = (lower + upper) * 0.5;
-        (x[0] - middle.x) * direction[0] + (x[2] - middle.z) * direction[2] >= 0.0 || size.x > 3.0 * size.y
-    };
-    let kept: Vec<usize> = (0..points.len()).filter(|&i| half(&points[i])).collect();
-    let centres: Vec<[f64; 3]> = kept.iter().map(|&i| points[i]).collect();
-    let radii: Vec<f64> = kept.iter().map(|&i| sample.packing.radius[i]).collect();
-    let values: Vec<f64> = kept.iter().map(|&i| lost[i]).collect();
-    let spheres = Spheres { centres: &centres, radii: &radii, paint: Paint::Nodes(&values) };
-    let picture = Picture { spheres: &[spheres], map: ColourMap::Damage, range: (0.0, 5.0), ..Picture::default() };
-    let view = View { direction, up, ..View::default() };
-    let png = picture.render(&view).and_then(|image| image.to_png());
-    Ok(atomic::write(path, &png.map_err(|error| Failure::input(error.to_string()))?)?)
+    atomic::write(&folder.join("particles.vtp"), &file.bytes())?;
+    #[cfg(feature = "report")]
+    super::lab_pictures::section(&folder.join("picture.png"), sample, &points, &lost)?;
+    Ok(())
 }

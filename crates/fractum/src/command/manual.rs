@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::CommandFactory;
 use clap_complete::Shell;
 use fractum::{ExitCode, Failure, say};
-use fractum_io::{WriteError, atomic};
+use fractum_output::{WriteError, atomic};
 
 use super::Arguments;
 

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
 use fractum::{ExitCode, Failure, say};
-use fractum_io::case::model::part_files;
-use fractum_io::case::{read_case, refuse_endless};
+use fractum_case::model::part_files;
+use fractum_case::{read_case, refuse_endless};
 use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
 
 use super::mesh_info::{self, Demand};
@@ -83,9 +83,9 @@ fn convert((file, parts): (&Path, Option<u32>), output: &Path, to: Option<Target
         ("msh", to) => {
             let mesh = read(file, parts)?;
             let format = to.unwrap_or(Target::Msh41Binary).into();
-            Ok(fractum_io::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
+            Ok(fractum_output::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
         }
-        ("vtu", None) => Ok(fractum_io::atomic::write(output, &mesh_vtu::bytes(&read(file, parts)?)?)?),
+        ("vtu", None) => Ok(fractum_output::atomic::write(output, &mesh_vtu::bytes(&read(file, parts)?)?)?),
         ("vtu", Some(_)) => wrong("--to is for files that end in .msh; leave it out"),
         _ => wrong(
             "ends in neither .msh nor .vtu, the formats that are written; for others write a .msh with --to msh22, then: \

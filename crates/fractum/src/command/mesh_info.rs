@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use fractum_io::case::Case;
-use fractum_io::case::printable;
-use fractum_io::number::{grouped, quantity, significant};
+use fractum_case::{Case, printable};
 use fractum_mesh::quality::{self, Lengths, Summary};
 use fractum_mesh::{Group, Mesh, topology};
+use fractum_output::number::{grouped, quantity, significant};
 use serde_json::{Value, json};
 
 /// Part of the process zone that edges must not exceed for an accurate peak load.
@@ -33,7 +32,7 @@ struct Zone {
 
 impl Demand {
     pub(super) fn of(case: &Case) -> Self {
-        let zone = |material: &fractum_io::case::model::Material| {
+        let zone = |material: &fractum_case::model::Material| {
             let law = &material.damage.as_ref()?.value.law;
             let (modulus, material) = (material.young_modulus, material.name.value.clone());
             let most = law.softening.largest_length(modulus, law.tensile_strength, law.fracture_energy);

@@ -1,8 +1,8 @@
 //! A mesh as a VTU, for ParaView and meshio.
 
 use fractum::Failure;
-use fractum_io::vtk::{CellBlock, CellKind, Compression, Field, UnstructuredGrid};
 use fractum_mesh::{Group, Mesh};
+use fractum_vtk::{CellBlock, CellKind, Compression, Field, UnstructuredGrid};
 
 /// Groups that have arrays of their own.
 const MOST_ARRAYS: usize = 100;

@@ -5,6 +5,8 @@ mod convergence;
 mod help;
 mod lab;
 mod lab_break;
+#[cfg(feature = "report")]
+mod lab_pictures;
 mod lab_strength;
 mod manual;
 mod mesh;
@@ -24,8 +26,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use fractum::cache_of_user as cache;
 use fractum::terminal::{Stream, Tone, toned};
 use fractum::{ExitCode, Failure, Options, Outcome, Ranks, say, tell};
-use fractum_io::case::{Diagnostics, KeyDoc};
-use fractum_io::summary::{Fracture, Probe, Status};
+use fractum_case::{Diagnostics, KeyDoc};
+use fractum_output::summary::{Fracture, Probe, Status};
 
 /// Fracture of solids: finite elements with damage, discrete elements, and the transition between them.
 #[derive(Parser)]
@@ -234,7 +236,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Lab { command } => lab::run(&command),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Schema => {
-            say!("{}", serde_json::to_string_pretty(&fractum_io::case::schema()).unwrap_or_default());
+            say!("{}", serde_json::to_string_pretty(&fractum_case::schema()).unwrap_or_default());
             Ok(ExitCode::Done)
         }
         Command::Explain { key } => explain(key.as_deref()),
@@ -257,7 +259,7 @@ fn run_gallery(selection: &fractum::verify::Selection) -> Result<ExitCode, Failu
 
 fn run_neighbours(selection: &fractum::verify::Selection, only_promised: bool) -> Result<ExitCode, Failure> {
     let rows = fractum::verify::neighbours::neighbours(selection, only_promised)?;
-    match rows.iter().filter(|row| row.end == fractum_io::beside::End::Fails).count() {
+    match rows.iter().filter(|row| row.end == fractum_output::beside::End::Fails).count() {
         0 => Ok(ExitCode::Done),
         failed => Err(Failure::Unmet(format!("{failed} references do not hold beside their case"))),
     }
@@ -332,7 +334,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
     }
     if !run.quiet {
         for (name, probe) in &summary.probes {
-            say!("{name:<28} {}", fractum_io::number::quantity(probe.r#final, &probe.unit));
+            say!("{name:<28} {}", fractum_output::number::quantity(probe.r#final, &probe.unit));
         }
         for body in &summary.fracture {
             say!("{:<28} {}", body.body, fracture_text(body, summary.time.at_rest));
@@ -341,7 +343,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
             let (verdict, tone) =
                 if expect.pass { ("as expected", Tone::Good) } else { ("NOT as expected", Tone::Wrong) };
             let verdict = toned(verdict, tone, Stream::Out);
-            let value = fractum_io::number::quantity(expect.value, &expect.unit);
+            let value = fractum_output::number::quantity(expect.value, &expect.unit);
             say!("{:<28} {value}, {verdict}: {} ({})", expect.quantity, expect.required(), expect.source);
         }
         if let Some((name, probe)) = load.as_ref().and_then(|name| summary.probes.get_key_value(name)) {
@@ -357,7 +359,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
 ///
 /// - `at_rest`: whether instants are load factors
 fn peak_text(name: &str, probe: &Probe, at_rest: bool) -> String {
-    use fractum_io::number::{at_instant, quantity};
+    use fractum_output::number::{at_instant, quantity};
     if probe.min.abs() > probe.max.abs() {
         return format!("{name} {}", quantity(probe.min, &probe.unit));
     }
@@ -368,7 +370,7 @@ fn peak_text(name: &str, probe: &Probe, at_rest: bool) -> String {
 ///
 /// - `at_rest`: whether instants are load factors
 fn fracture_text(body: &Fracture, at_rest: bool) -> String {
-    use fractum_io::number::{at_instant, grouped, quantity};
+    use fractum_output::number::{at_instant, grouped, quantity};
     if body.broken_bonds > 0 {
         let (first, area) = (at_instant(body.first_break, at_rest), quantity(body.crack_area, "m^2"));
         let bonds = grouped(&body.broken_bonds.to_string());
@@ -409,12 +411,12 @@ fn check(case: &std::path::Path, set: &[(String, String)], strict: bool) -> Resu
 
 fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
     let Some(key) = key else {
-        for doc in fractum_io::case::keys() {
+        for doc in fractum_case::keys() {
             say!("{:<40} {}", doc.path, doc.doc);
         }
         return Ok(ExitCode::Done);
     };
-    match fractum_io::case::explain(key) {
+    match fractum_case::explain(key) {
         Ok(doc) => {
             let kind = |doc: &KeyDoc| match doc.default {
                 "" => doc.kind.label(),
@@ -423,7 +425,7 @@ fn explain(key: Option<&str>) -> Result<ExitCode, Failure> {
             say!("{}\n  {}\n  type: {}", doc.path, doc.doc, kind(doc));
             let below = format!("{}.", doc.path);
             let own = |key: &&KeyDoc| key.path.strip_prefix(&below).is_some_and(|name| !name.contains('.'));
-            for key in fractum_io::case::keys().iter().filter(own) {
+            for key in fractum_case::keys().iter().filter(own) {
                 say!("\n{}\n  {}\n  type: {}", key.path, key.doc, kind(key));
             }
             Ok(ExitCode::Done)

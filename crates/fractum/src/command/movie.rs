@@ -3,8 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use fractum::{ExitCode, Failure, MovieSettings, say};
-use fractum_io::number::quantity;
+use fractum::{ExitCode, Failure};
 
 /// Pictures per second at most.
 const FASTEST: u16 = 100;
@@ -30,13 +29,26 @@ pub(crate) struct MovieArguments {
 /// Writes the movie.
 ///
 /// # Errors
-/// A folder without frames, a size out of range, a disk that cannot be written to.
+/// A folder without frames, a size out of range, a disk that cannot be written to; a program without movies.
+#[cfg(feature = "report")]
 pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
+    use fractum_output::number::quantity;
     let MovieArguments { folder, output, rate, width, height } = arguments;
     let output = output.clone().unwrap_or_else(|| folder.join("movie.png"));
-    let settings = MovieSettings { width: *width, height: *height, rate: *rate };
+    let settings = fractum::MovieSettings { width: *width, height: *height, rate: *rate };
     let movie = fractum::movie(folder, &output, settings)?;
     let [low, high] = [movie.range.0, movie.range.1].map(|value| quantity(value, movie.unit));
-    say!("{}: {} frames, colours are {} from {low} to {high}", output.display(), movie.frames, movie.label);
+    fractum::say!("{}: {} frames, colours are {} from {low} to {high}", output.display(), movie.frames, movie.label);
     Ok(ExitCode::Done)
+}
+
+/// Refuses to make one.
+///
+/// # Errors
+/// Always.
+#[cfg(not(feature = "report"))]
+pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
+    // What was asked for is of no use here.
+    let MovieArguments { folder: _, output: _, rate: _, width: _, height: _ } = arguments;
+    Err(fractum::report::no_report())
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use fractum::{ExitCode, Failure, say};
-use fractum_io::atomic;
+use fractum_output::atomic;
 
 /// A case to start from.
 struct Template {

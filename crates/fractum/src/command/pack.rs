@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use fractum::{ExitCode, Failure, say, tell};
 use fractum_calibrate::{Micro, Sample, lab};
-use fractum_io::atomic;
+use fractum_output::atomic;
 use fractum_pack::{Certificate, Convention, Packing, bond};
 
 use super::shape::{ShapeArguments, choice};

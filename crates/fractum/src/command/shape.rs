@@ -8,9 +8,9 @@ use std::time::Instant;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
-use fractum_io::case::{Choice, Dimension, parse_quantity, refuse_endless};
-use fractum_io::log::Progress;
+use fractum_case::{Choice, Dimension, parse_quantity, refuse_endless};
 use fractum_mesh::read_mesh;
+use fractum_output::log::Progress;
 use fractum_pack::{
     ClosedSurface, Domain, PackError, PackProgress, PackSize, PackSpec, Packing, pack_and_tell, pack_certified,
     read_stl,

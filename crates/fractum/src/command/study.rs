@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fractum::study::{Settings, study};
 use fractum::{ExitCode, Failure, tell};
-use fractum_io::study::plan::{Variation, parse_share, plan};
+use fractum_case::study::plan::{Variation, parse_share, plan};
 
 use super::{assignment, cache, thread_count};
 

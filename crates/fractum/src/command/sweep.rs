@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use clap::Subcommand;
 use fractum::study::sweep::{collect, find, results_folder, run_one};
 use fractum::{ExitCode, Failure, Options, say, tell};
-use fractum_io::atomic;
-use fractum_io::study::list::{of_study, to_csv};
-use fractum_io::study::plan::{Variation, plan};
-use fractum_io::summary::Status;
+use fractum_case::study::list::{of_study, to_csv};
+use fractum_case::study::plan::{Variation, plan};
+use fractum_output::atomic;
+use fractum_output::summary::Status;
 
 use super::{assignment, cache, thread_count};
 

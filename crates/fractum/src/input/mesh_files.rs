@@ -4,19 +4,19 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_io::build::{SolidDivision, cannot_divide, divide, replicated_bodies};
-use fractum_io::case::model::{MeshSource, SolidGroup, WHOLE_MESH};
-use fractum_io::case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
-use fractum_io::memory;
-use fractum_io::number::quantity;
-use fractum_io::warning::Code;
+use fractum_case::build::{SolidDivision, cannot_divide, divide, replicated_bodies};
+use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
+use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_math::Vec3;
 use fractum_mesh::{JoinError, Joint, Mesh, WholeMesh, halved, joined, joined_bodies, scrambled};
+use fractum_output::memory;
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
 use fractum_parallel::{Exchange, gather};
-use fractum_prepare::Processes;
 use xxhash_rust::xxh3::xxh3_128;
 
 use crate::error::Failure;
+use crate::process::ranks::Processes;
 
 /// What a process has read of the mesh of a case, in metres.
 pub(crate) struct MeshFiles {

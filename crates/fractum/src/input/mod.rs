@@ -1,25 +1,30 @@
 //! From paths to a scene.
 
-pub(crate) mod mesh_files;
+mod memory;
+mod mesh_files;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use fractum_io::build::{BuiltScene, build_shared_scene, check_before_particles, doubts};
-use fractum_io::case::{Case, Diagnostics, read_case};
-use fractum_io::log::Progress;
+use fractum_case::build::{BuiltScene, build_shared_scene, check_before_particles, doubts};
+use fractum_case::prepare::{MadeBodies, facets, prepare_bodies};
+use fractum_case::{Case, Diagnostics, read_case};
 use fractum_mesh::Mesh;
+use fractum_output::log::Progress;
 use fractum_parallel::Exchange;
+use fractum_prepare::{BondedReport, Cache};
 
 use crate::error::Failure;
 use crate::input::mesh_files::{JoinedMesh, MeshFiles};
 use crate::output::columns;
 use crate::output::columns::Course;
-use crate::report::plots;
+use crate::plots;
+use crate::process::ranks::Processes;
+use crate::solver::choice::choose;
 use crate::terminal::Stream;
-use fractum_prepare::{BondedBodies, BondedReport, Cache, Processes, check_memory, choose, facets, prepare_bodies};
+use memory::check_memory;
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {
@@ -116,7 +121,7 @@ impl Meshed {
 pub(crate) struct Prepared {
     case: Case,
     mesh: JoinedMesh,
-    made: BondedBodies,
+    made: MadeBodies,
 }
 
 impl Prepared {

@@ -1,8 +1,9 @@
 //! Columns of the history.
 
-use fractum_io::build::BuiltScene;
-use fractum_io::case::model::{Body, BodyKind, Case, HistoryColumns, SolverKind};
-use fractum_io::history::{Column, Table};
+use fractum_case::build::BuiltScene;
+use fractum_case::model::{Body, BodyKind, Case, SolverKind};
+use fractum_output::columns::HistoryColumns;
+use fractum_output::history::Column;
 use fractum_scene::Scene;
 use fractum_scene::statics::{Control, NoEquilibrium};
 
@@ -25,16 +26,6 @@ impl Course {
                 || stage.statics.as_ref().is_some_and(|statics| statics.control != Control::Time),
         })
     }
-}
-
-/// A history whose first column orders its rows: the step where the load factor may run back, else the time.
-pub(crate) fn ordered(mut history: Table) -> Table {
-    let names: Vec<&str> = history.columns.iter().map(|column| column.name.as_str()).collect();
-    if let Some(step) = HistoryColumns::step(&names) {
-        history.columns[..=step].rotate_right(1);
-        history.values[..=step].rotate_right(1);
-    }
-    history
 }
 
 /// Columns of the history of a run.

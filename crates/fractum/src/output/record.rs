@@ -3,25 +3,24 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use fractum_io::atomic::{Group, Written};
-use fractum_io::attenuation::{Attenuation, Station};
-use fractum_io::build::PpvStations;
-use fractum_io::case::model::{
-    Case, HistoryColumns, Instant, Output, OutputField, ProbeExpression, ProbeInput, ProbeKind, Take, load_of,
-};
-use fractum_io::history::History;
-use fractum_io::summary::LargestOverlap;
-use fractum_io::vtk::{Collection, FrameWriter};
+use fractum_case::build::PpvStations;
+use fractum_case::model::{BodyKind, Case, Output, ProbeExpression, ProbeInput, ProbeKind, Take, load_of};
+use fractum_output::atomic::{Group, Written};
+use fractum_output::attenuation::{Attenuation, Station};
+use fractum_output::columns::{HistoryColumns, Instant};
+use fractum_output::fields::OutputField;
+use fractum_output::frames::{BuiltGauges, Frame, FrameEntry, FrameWriter, GAUGES, GridLayout, PathFrames};
+use fractum_output::history::History;
+use fractum_output::summary::LargestOverlap;
 use fractum_scene::{
     Counts, EnergyKind, PeakVelocity, Probe, ProbedScene, Scene, StationPlace, VelocityStation, Watched,
 };
+use fractum_vtk::{Collection, Cut};
 use serde::{Deserialize, Serialize};
 
 use crate::error::Failure;
 use crate::output::columns::{Course, columns, no_probes};
 use crate::output::fetch::{Fetch, fetch_together, points_of_probes};
-use crate::output::frames::{Frame, FrameEntry, GAUGES, GridLayout};
-use crate::output::path_frames::PathFrames;
 use crate::output::series::{index_of_max, interpolate, is_due, next_index, slope_of_window, speed, time_mean};
 use crate::process::ranks::Ranks;
 use crate::solver::Measured;
@@ -133,7 +132,7 @@ impl Recorder {
         let elements = |body: usize| vec![false; scene.solid.alive(body).len()];
         let mut noted: Vec<Vec<bool>> = (0..scene.solid.body_count()).map(elements).collect();
         state.removed.iter().for_each(|&(body, element, _)| noted[body as usize][element as usize] = true);
-        fractum_io::atomic::create_folder(&results.join("fields"))?;
+        fractum_output::atomic::create_folder(&results.join("fields"))?;
         Ok(Recorder {
             case,
             probes,
@@ -376,18 +375,18 @@ impl Recorder {
 
     fn frame_of(&self, scene: &Scene) -> Result<Frame, Failure> {
         let instant = if self.course.turns_back { scene.clock.step as f64 } else { scene.clock.time };
-        Frame::of(scene, &self.grid, instant)
+        Ok(Frame::of(scene, &self.grid, instant)?)
     }
 
     fn write(&mut self, mut frame: Frame) -> Result<(), Failure> {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
         for (name, file) in frame.take_tables(number) {
-            fractum_io::atomic::create_folder(&self.results.join(GAUGES))?;
+            fractum_output::atomic::create_folder(&self.results.join(GAUGES))?;
             files.push((self.results.join(&name), file));
         }
         for FrameEntry { population, name, file, is_listed } in frame.files(number) {
-            fractum_io::atomic::create_folder(&self.results.join(population.folder()))?;
+            fractum_output::atomic::create_folder(&self.results.join(population.folder()))?;
             files.push((self.results.join(&name), file));
             if is_listed {
                 self.state.collection.push(instant, population.number(), population.name(), name);
@@ -423,4 +422,23 @@ impl Recorder {
     pub(crate) fn finish(self, files: &mut Group) {
         self.history.finish_in(files);
     }
+}
+
+/// What the frames of a run have in common.
+///
+/// - `cut`: which pieces of solids and particles this process writes
+pub(crate) fn frame_layout(
+    scene: &Scene,
+    file_order: &[u32],
+    gauges: Vec<BuiltGauges>,
+    case: &Case,
+    cut: Cut,
+) -> GridLayout {
+    let material = |body: usize| {
+        let name = &scene.solid.body(body).name;
+        let own = case.bodies.iter().find(|of_case| of_case.name.value == *name);
+        own.map_or(-1, |body| if let BodyKind::Solid(solid) = &body.kind { solid.material as i32 } else { -1 })
+    };
+    let materials = (0..scene.solid.body_count()).map(material).collect();
+    GridLayout::new(scene, file_order, gauges, materials, case.output.fields, cut)
 }

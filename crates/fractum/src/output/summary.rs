@@ -4,10 +4,10 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::time::Duration;
 
+use fractum_case::model::{Case, Expect, ProbeKind};
 use fractum_fem::{BodyState, Solid, cracks, neighbours};
-use fractum_io::case::model::{Case, Expect, ProbeKind};
-use fractum_io::expectation::Expectation;
-use fractum_io::summary::{self, Status, Summary};
+use fractum_output::expectation::Expectation;
+use fractum_output::summary::{self, Status, Summary};
 use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, passing_size};
 use serde::Serialize;
 use xxhash_rust::xxh3::Xxh3;
@@ -44,7 +44,7 @@ pub(crate) fn of_scene(scene: &Scene) -> Summary {
 /// The probes over the run.
 pub(crate) fn probes(case: &Case, recorder: &Recorder) -> BTreeMap<String, summary::Probe> {
     let record = recorder.state();
-    let of = |(index, probe): (usize, &fractum_io::case::model::Probe)| {
+    let of = |(index, probe): (usize, &fractum_case::model::Probe)| {
         let unit = probe.unit.clone();
         if let ProbeKind::Expression(expression) = &probe.kind
             && expression.scalar

@@ -2,13 +2,13 @@
 
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
+use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{ElementKind, Formulation, Kinematics, Plane, motion, neighbours};
-use fractum_io::case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
-use fractum_io::number::quantity;
 use fractum_math::elementary::cbrt;
 use fractum_math::{Mat3, Sym3, Vec3};
+use fractum_output::number::quantity;
 use fractum_prepare::{BondedReport, FoundStrengths, InterfaceReport, Joints, Origin};
 use fractum_scene::Scene;
 

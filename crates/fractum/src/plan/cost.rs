@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use fractum_dem::AnyBondLaw;
 use fractum_fem::{ElementKind, Formulation, Kinematics, neighbours};
-use fractum_io::vtk::WAITING;
+use fractum_output::frames::WAITING;
 use fractum_scene::{BondedBody, Scene};
 
 // Nanoseconds are those of one core that needs `REFERENCE` for the loop of `slowness`.

@@ -3,21 +3,22 @@
 use std::f64::consts::LN_10;
 use std::time::Instant;
 
-use fractum_io::build::BuiltScene;
-use fractum_io::case::model::{Case, Load, LoadKind, Probe as DescribedProbe};
-use fractum_io::vtk::Cut;
+use fractum_case::build::BuiltScene;
+use fractum_case::model::{Case, Load, LoadKind, Probe as DescribedProbe};
 use fractum_math::Vec3;
 use fractum_math::elementary::{exp, ln};
-use fractum_prepare::{PATH_ITERATIONS, solution_time};
+use fractum_output::frames::Frame;
 use fractum_scene::statics::{Control, Stiffness};
 use fractum_scene::{GasMeasure, Probe, ProbedScene, Scene};
+use fractum_vtk::Cut;
 
 use super::cost::{Cost, slower_by_cracks, slowness};
 use crate::input::Input;
-use crate::output::frames::{Frame, GridLayout};
+use crate::output::record::frame_layout;
 use crate::phases::Phases;
-use crate::report::{gallery, strip};
+use crate::report;
 use crate::solver::Solver;
+use crate::solver::choice::{PATH_ITERATIONS, solution_time};
 
 /// Seconds of a stage that are tried.
 const TRIED: f64 = 0.15;
@@ -60,7 +61,7 @@ impl Estimate {
 ///
 /// - `set_up`: time that it took to make the input ready [s]
 pub(crate) fn estimate(input: &mut Input, set_up: f64) -> Option<Estimate> {
-    let pixels = gallery::expected_pixels(&input.built.scene);
+    let pixels = report::pixels_at_end(&input.built.scene);
     let mut estimate = Estimate { set_up, steps: 0.0, output: 0.0 };
     let (mut start, mut output_frames) = (0.0, 0.0);
     let Input { case, built, later, .. } = input;
@@ -82,7 +83,7 @@ pub(crate) fn estimate(input: &mut Input, set_up: f64) -> Option<Estimate> {
         estimate.output += written.own + (written.beside - steps).max(0.0);
         start = case.solver.end;
     }
-    let pixels = pixels + strip::expected_pixels(output_frames);
+    let pixels = pixels + report::pixels_over_time(output_frames);
     estimate.output += slowness() * (PIXEL * pixels + FILES);
     Some(estimate)
 }
@@ -200,7 +201,7 @@ impl Stage<'_> {
             Some(count * began.elapsed().as_secs_f64())
         };
         let probes: f64 = built.probes.iter().zip(&self.case.probes).filter_map(measurements).sum();
-        let layout = GridLayout::new(scene, &built.file_order, Vec::new(), self.case, Cut::WHOLE);
+        let layout = frame_layout(scene, &built.file_order, Vec::new(), self.case, Cut::WHOLE);
         let began = Instant::now();
         let frame = Frame::of(scene, &layout, 0.0);
         let gathered = began.elapsed().as_secs_f64();

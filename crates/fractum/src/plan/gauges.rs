@@ -1,7 +1,7 @@
 //! What gauges will be read.
 
-use fractum_io::build::BuiltGauges;
-use fractum_io::case::model::Case;
+use fractum_case::model::Case;
+use fractum_output::frames::BuiltGauges;
 
 use super::Plan;
 

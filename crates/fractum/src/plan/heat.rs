@@ -1,7 +1,7 @@
 //! Heat in the plan.
 
-use fractum_io::case::model::{Case, HeatKind};
-use fractum_io::number::quantity;
+use fractum_case::model::{Case, HeatKind};
+use fractum_output::number::quantity;
 use fractum_scene::{PackingReport, Scene};
 
 use super::Plan;

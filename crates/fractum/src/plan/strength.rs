@@ -1,8 +1,8 @@
 //! Strength by chance in the plan of a run.
 
-use fractum_io::build::WeibullReport;
-use fractum_io::case::model::{BodyKind, Case, Distribution, Reference};
-use fractum_io::number::quantity;
+use fractum_case::build::WeibullReport;
+use fractum_case::model::{BodyKind, Case, Distribution, Reference};
+use fractum_output::number::quantity;
 
 use super::Plan;
 

@@ -1,7 +1,7 @@
 //! The time step in the plan.
 
-use fractum_io::case::model::{Case, StopWhen};
-use fractum_io::number::{percent, quantity};
+use fractum_case::model::{Case, StopWhen};
+use fractum_output::number::{percent, quantity};
 use fractum_scene::Scene;
 
 use super::Plan;

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use fractum_io::checkpoint;
+use fractum_output::checkpoint;
 
 use crate::process::interrupt::is_interrupted;
 use crate::tell;
@@ -119,7 +119,7 @@ mod tests {
         };
         assert!(watch(true).right_to_speak().is_some());
         let path = folder.path().join("run.log");
-        let leader = fractum_io::log::RunLog::create(&path).unwrap();
+        let leader = fractum_output::log::RunLog::create(&path).unwrap();
         assert!(watch(false).right_to_speak().is_none());
         drop(leader);
         let first = watch(false).right_to_speak();

@@ -1,23 +1,53 @@
 //! The ranks that run one case together: the first one writes results and speaks, all of them decide alike.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+use fractum_case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
+use fractum_case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_dem::ParticleSubdomainSize;
 use fractum_fem::neighbours::{self, SubdomainSize};
-use fractum_io::case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
-use fractum_io::case::{Diagnostic, Diagnostics, Place, read_case};
-use fractum_io::number::grouped;
-use fractum_io::vtk::Cut;
+use fractum_output::number::grouped;
 use fractum_parallel::{Exchange, gather};
-use fractum_prepare::Processes;
 use fractum_scene::{Scene, Watched, ranks};
+use fractum_vtk::Cut;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::{ExitCode, Failure};
 use crate::process::last_words::LastWords;
+
+/// Processes that run a case together.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Processes {
+    /// All of them: they share the cells of solids.
+    pub(crate) all: usize,
+    /// Those on this machine: they share its memory.
+    pub(crate) here: usize,
+    /// Number of this one, from 0.
+    pub(crate) rank: usize,
+}
+
+impl Processes {
+    /// The same as far as memory goes, each of which does all by itself.
+    pub(crate) fn alike(self) -> Self {
+        Processes { all: 1, rank: 0, ..self }
+    }
+
+    /// Which of some items this process takes: each takes some that follow each other.
+    pub(crate) fn own(self, items: usize) -> Range<usize> {
+        items * self.rank / self.all..items * (self.rank + 1) / self.all
+    }
+}
+
+impl Default for Processes {
+    /// One by itself.
+    fn default() -> Self {
+        Processes { all: 1, here: 1, rank: 0 }
+    }
+}
 
 /// This process among those that run a case together, or alone.
 #[derive(Debug, Default)]

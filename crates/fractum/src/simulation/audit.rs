@@ -1,13 +1,13 @@
 //! What a run finds while it goes, as warnings.
 
-use fractum_fem::{cracks, motion, neighbours};
 use std::f64::consts::PI;
 
-use fractum_io::case::model::ProbeKind;
-use fractum_io::number::{at_instant, percent, quantity};
-use fractum_io::summary::LargestOverlap;
-use fractum_io::warning::{Code, Warning};
+use fractum_case::model::ProbeKind;
+use fractum_fem::{cracks, motion, neighbours};
 use fractum_math::Vec3;
+use fractum_output::number::{at_instant, percent, quantity};
+use fractum_output::summary::LargestOverlap;
+use fractum_output::warning::{Code, Warning};
 use fractum_scene::{Notice, Noticed, Scene, Site};
 
 use super::{End, Simulation};

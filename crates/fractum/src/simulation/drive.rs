@@ -1,7 +1,7 @@
 //! What a program may do that drives a simulation, beside its steps.
 
-use fractum_io::summary::Status;
 use fractum_math::Vec3;
+use fractum_output::summary::Status;
 use fractum_scene::Population;
 
 use super::{End, Simulation};

@@ -1,9 +1,9 @@
 //! Why a run is over.
 
-use fractum_io::case::model::StopWhen;
-use fractum_io::number::percent;
-use fractum_io::summary::Status;
-use fractum_io::warning::Warning;
+use fractum_case::model::StopWhen;
+use fractum_output::number::percent;
+use fractum_output::summary::Status;
+use fractum_output::warning::Warning;
 use fractum_scene::StepError;
 
 use super::Simulation;

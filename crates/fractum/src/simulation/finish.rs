@@ -3,23 +3,23 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use fractum_case::model::{Case, Material};
 use fractum_fem::{CrackFacet, CrackSurface, Solid, neighbours};
-use fractum_io::atomic::{Group, create_folder};
-use fractum_io::attenuation;
-use fractum_io::case::model::{Case, Material};
-use fractum_io::fragments::{self, Fragment};
-use fractum_io::number::{at_instant, quantity, significant};
-use fractum_io::summary::{Breakage, Hashes, Status, Summary, hash_text};
+use fractum_output::atomic::{Group, create_folder};
+use fractum_output::attenuation;
+use fractum_output::fragments::{self, Fragment};
+use fractum_output::frames::cracks::{self, Columns, FacetHistory};
+use fractum_output::notes::{self, Notes, PictureNote};
+use fractum_output::number::{at_instant, quantity, significant};
+use fractum_output::summary::{Breakage, Hashes, Status, Summary, hash_text};
 use fractum_scene::{Scene, fragment_size, ranks};
 
 use super::{End, Outcome, Saved, Simulation};
 use crate::error::{ExitCode, Failure};
-use crate::output::cracks::{self, Columns, FacetHistory};
 use crate::output::summary;
 use crate::phases::Part;
-use crate::report::gallery;
-use crate::report::strip::strip;
-use crate::report::{self, Notes, PictureNote};
+use crate::plots;
+use crate::report::{self, Skin};
 use crate::solver::Measured;
 
 impl Simulation {
@@ -74,15 +74,15 @@ impl Simulation {
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
         let load = self.load().map(|(index, _)| self.case.probes[index].name.value.clone());
-        let notes = Notes {
+        let kept = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             pictures,
             inputs: inputs_of(&self.case),
-            plots: crate::report::plots::notes(&self.case),
+            plots: plots::notes(&self.case),
         };
         files.add(&self.folder.join("summary.json"), summary.to_json().as_bytes());
-        report::keep(&self.folder, &notes, &mut files);
+        notes::keep(&self.folder, &kept, &mut files);
         self.recorder.finish(&mut files);
         let page = report::add(&self.folder, &mut files);
         // A file that could not be written is the reason, not what the page lacks then.
@@ -116,20 +116,20 @@ impl Simulation {
     }
 
     /// What is seen of the solids, for the process that draws it; those that share a mesh put it together.
-    fn skin(&self) -> Option<gallery::Skin> {
+    fn skin(&self) -> Option<Skin> {
         let leads = self.ranks.leads();
         if neighbours::is_divided(&self.scene.solid) {
-            let parts = self.ranks.gather(gallery::Skin::of(&self.scene));
-            return leads.then(|| gallery::Skin::joined(parts));
+            let parts = self.ranks.gather(Skin::of(&self.scene));
+            return leads.then(|| Skin::joined(parts));
         }
-        leads.then(|| gallery::Skin::of(&self.scene))
+        leads.then(|| Skin::of(&self.scene))
     }
 
     /// Cracks, pieces, the pictures of the end and, once the last frame is written, those over time.
     fn draw(
         &mut self,
         pieces: &[fractum_scene::Fragment],
-        skin: gallery::Skin,
+        skin: Skin,
         files: &mut Group,
     ) -> Result<Vec<PictureNote>, Failure> {
         let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
@@ -139,11 +139,11 @@ impl Simulation {
             add_cracks(scene, folder, &recorder.state().removed, files)?;
             let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
             files.add(&folder.join("fragments.csv"), fragments.as_bytes());
-            let mut pictures = gallery::draw(scene, skin, folder, at_rest, files);
+            let mut pictures = report::draw(scene, skin, folder, at_rest, files);
             recorder.finish_frame()?;
             // Frames of a mesh that no process has whole may be larger than the memory of one.
             if !neighbours::is_divided(&scene.solid) {
-                pictures.extend(strip(folder, peak, at_rest, files));
+                pictures.extend(report::strip(folder, peak, at_rest, files));
             }
             Ok(pictures)
         })
@@ -179,7 +179,8 @@ fn add_broken_bonds(scene: &Scene, folder: &Path, files: &mut Group) -> Result<(
     files.add(&folder.join("cracks.csv"), cracks::table(all.clone(), columns).as_bytes());
     let (position, reference) = (&scene.bonded.particles.position, scene.bonded.reference());
     let displacement = |particle: u32| position[particle as usize] - reference[particle as usize];
-    cracks::polygons(all.map(|(_, crack)| crack), Some(&displacement))?.add_to(files, &folder.join("cracks.vtp"));
+    let polygons = cracks::polygons(all.map(|(_, crack)| crack), Some(&displacement))?;
+    files.add(&folder.join("cracks.vtp"), &polygons.bytes());
     Ok(())
 }
 
@@ -206,7 +207,8 @@ fn add_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)], files: 
     let name = if bonds { "cracks-solids" } else { "cracks" };
     let table = cracks::facets_table(&scene.solid, &crack, &history);
     files.add(&folder.join(format!("{name}.csv")), table.as_bytes());
-    cracks::facets_file(&scene.solid, &crack, Some(&history))?.add_to(files, &folder.join(format!("{name}.vtp")));
+    let facets = cracks::facets_file(&scene.solid, &crack, Some(&history))?;
+    files.add(&folder.join(format!("{name}.vtp")), &facets.bytes());
     Ok(())
 }
 
@@ -254,7 +256,7 @@ fn of_material(material: &Material) -> String {
         parts.push(format!("tensile strength {}", quantity(law.tensile_strength, "Pa")));
         parts.push(format!("fracture energy {}", quantity(law.fracture_energy, "J/m^2")));
     }
-    if let Some(strength) = material.fracture.as_ref().and_then(|fracture| fracture.value.tensile_strength) {
+    if let Some(strength) = material.fracture.as_ref().and_then(|fracture| fracture.value.strength.tensile_strength) {
         parts.push(format!("tensile strength of bonds {}", quantity(strength, "Pa")));
     }
     parts.join(", ")

@@ -2,8 +2,8 @@
 
 use std::io::Stderr;
 
-use fractum_io::log::{Progress, RunLog};
-use fractum_io::warning::Warning;
+use fractum_output::log::{Progress, RunLog};
+use fractum_output::warning::Warning;
 
 use super::Options;
 use crate::error::Failure;

@@ -1,18 +1,20 @@
 //! From a case file to a simulation before its next step.
 
-use fractum_fem::neighbours;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use fractum_io::WriteError;
-use fractum_io::atomic::create_folder;
-use fractum_io::case::{Case, Diagnostic, Diagnostics};
-use fractum_io::checkpoint::{self, CheckpointError, Header, Identity, Loaded};
-use fractum_io::log::RunLog;
-use fractum_io::number::{at_instant, instant_text};
-use fractum_io::warning::{Code, Warning};
+use fractum_case::{Case, Diagnostic, Diagnostics};
+use fractum_fem::neighbours;
+use fractum_output::WriteError;
+use fractum_output::atomic::create_folder;
+use fractum_output::checkpoint::{self, CheckpointError, Header, Identity, Loaded};
+use fractum_output::frames::{GAUGES, Population};
+use fractum_output::log::RunLog;
+use fractum_output::notes::{PICTURES, STRIP_FILE};
+use fractum_output::number::{at_instant, instant_text};
+use fractum_output::warning::{Code, Warning};
 use fractum_scene::{Scene, ranks};
 
 use super::messages::Messages;
@@ -21,16 +23,12 @@ use super::{About, Options, RunState, Simulation};
 use crate::error::Failure;
 use crate::input::{Input, read};
 use crate::output::columns::Course;
-use crate::output::frames::GAUGES;
-use crate::output::frames::GridLayout;
-use crate::output::population::Population;
+use crate::output::record::frame_layout;
 use crate::output::record::{RecordState, Recorder};
 use crate::phases::Phases;
 use crate::plan::Plan;
 use crate::process::interrupt::UnderWay;
 use crate::process::ranks::Ranks;
-use crate::report::gallery;
-use crate::report::strip::STRIP_FILE;
 use crate::solver::{Measured, Solver};
 use crate::tell;
 use crate::terminal::{Stream, Tone, toned};
@@ -155,7 +153,7 @@ impl Simulation {
             (stage, probes) = (Arc::new(next), built.probes);
         }
         // Rigid bodies are drawn from where they lie at the start.
-        let grid = GridLayout::new(
+        let grid = frame_layout(
             &scene,
             &built.file_order,
             built.gauges,
@@ -363,7 +361,7 @@ const RESULTS: [&str; 12] = [
 /// frames, no pictures, no case. Other files in these folders are the user's, and stay.
 fn discard_results(folder: &Path) -> Result<(), Failure> {
     checkpoint::discard(&folder.join("checkpoint"))?;
-    let pictures = gallery::FILES.map(|name| folder.join("pictures").join(name));
+    let pictures = PICTURES.map(|name| folder.join("pictures").join(name));
     let files = RESULTS.map(|name| folder.join(name)).into_iter().chain(pictures);
     for path in files.filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;

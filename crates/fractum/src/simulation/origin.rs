@@ -4,11 +4,11 @@ use std::fs;
 use std::path::Path;
 use std::time::SystemTime;
 
-use fractum_io::WriteError;
-use fractum_io::atomic::{self, Group};
-use fractum_io::case::Case;
-use fractum_io::origin::{InputFile, Origin, utc};
-use fractum_io::summary::hash_text;
+use fractum_case::Case;
+use fractum_output::WriteError;
+use fractum_output::atomic::{self, Group};
+use fractum_output::origin::{InputFile, Origin, utc};
+use fractum_output::summary::hash_text;
 
 use super::Options;
 use crate::error::Failure;

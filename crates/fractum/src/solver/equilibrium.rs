@@ -1,6 +1,6 @@
 //! Solids from equilibrium to equilibrium, in motion where there is none.
 
-use fractum_io::number::quantity;
+use fractum_output::number::quantity;
 use fractum_scene::statics::{DynamicPhase, NoEquilibrium, StaticSettings, StaticSolver, StaticState};
 use fractum_scene::{Scene, StepError};
 use serde::{Deserialize, Serialize};

@@ -1,11 +1,12 @@
 //! What brings a scene from one instant to the next: motion, or equilibrium of solids or of a bonded body.
 
 mod breaking;
+pub(crate) mod choice;
 mod equilibrium;
 mod heat;
 mod motion;
 
-use fractum_io::build::BuiltScene;
+use fractum_case::build::BuiltScene;
 use fractum_scene::{BondedStaticState, Scene, StepError};
 use serde::{Deserialize, Serialize};
 

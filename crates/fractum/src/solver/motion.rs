@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use fractum_io::number::at_instant;
+use fractum_output::number::at_instant;
 use fractum_scene::{Scene, StepError};
 
 use super::Advance;

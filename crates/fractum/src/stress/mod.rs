@@ -15,8 +15,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use fractum_io::atomic;
 use fractum_mesh::{Mesh, MshFormat, write_msh};
+use fractum_output::atomic;
 use fractum_prepare::Cache;
 use serde::Serialize;
 use serde_json::Value;

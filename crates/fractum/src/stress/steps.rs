@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use fractum_io::{WriteError, atomic};
+use fractum_output::{WriteError, atomic};
 use fractum_scene::{Scene, StepError};
 use serde::{Deserialize, Serialize};
 

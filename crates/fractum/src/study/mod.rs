@@ -3,7 +3,6 @@
 //! Every run has a folder of its own below `runs`, named by the hash of its case, mesh and program; a run that has finished
 //! there is not run again. Tables and pages are made from what has finished, so that a study that was interrupted goes on.
 
-mod exhibits;
 mod single;
 pub mod sweep;
 
@@ -12,16 +11,17 @@ use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fractum_io::atomic;
-use fractum_io::number::significant;
-use fractum_io::study::compare::{Family, families};
-use fractum_io::study::plan::Study;
-use fractum_io::study::run::{End, Run};
-use fractum_io::study::{page, table};
+use fractum_case::study::plan::Study;
+use fractum_output::atomic;
+use fractum_output::number::significant;
+use fractum_output::study::compare::{Family, families};
+use fractum_output::study::run::{End, Run};
+use fractum_output::study::table;
 use fractum_prepare::Cache;
 
 use crate::error::Failure;
 use crate::process::interrupt::{UnderWay, is_interrupted};
+use crate::report;
 use crate::{say, tell};
 use single::Single;
 
@@ -88,7 +88,7 @@ pub(crate) fn runs(study: &Study, settings: &Settings) -> Result<(Vec<Run>, Resu
             scope.spawn(work);
         }
     });
-    let open = |planned: &fractum_io::study::plan::Planned| Run { planned: planned.clone(), ..Run::default() };
+    let open = |planned: &fractum_output::study::run::Planned| Run { planned: planned.clone(), ..Run::default() };
     let runs: Vec<Run> =
         slots.into_iter().zip(&study.runs).map(|(slot, planned)| take(slot).unwrap_or_else(|| open(planned))).collect();
     let ended = match take(wrong) {
@@ -124,7 +124,7 @@ fn show(run: &Run, index: usize, of: usize) {
     match &run.end {
         End::Finished(measured) => {
             let worst = measured.worst().map_or(String::new(), |worst| {
-                format!(", largest relative error {}", fractum_io::number::percent(worst))
+                format!(", largest relative error {}", fractum_output::number::percent(worst))
             });
             tell!("{name}: {} s{worst}", significant(measured.seconds(), 3));
         }
@@ -143,17 +143,12 @@ fn write(study: &Study, runs: &[Run], settings: &Settings) -> Result<(), Failure
     text.push(lines(&table::failures(&families)));
     text.retain(|part| !part.is_empty());
     let text = text.join("\n");
-    let exhibits = exhibits::of(&families, &settings.output);
     atomic::write(&file("study.md"), text.as_bytes())?;
     atomic::write(&file("study.csv"), table::to_csv(runs).as_bytes())?;
     atomic::write(&file("study.json"), table::to_json(&study.title, &families, within).as_bytes())?;
-    atomic::write(&file("study.svg"), page::to_svg(&page::price(&families)).as_bytes())?;
-    atomic::write(&file("study.html"), page::to_html(&study.title, &families, within, &exhibits).as_bytes())?;
+    report::write_study(&study.title, &families, within, &settings.output)?;
     say!("{text}");
-    say!(
-        "! means that a reference is missed; study.md, study.csv, study.json, study.svg and study.html in {}",
-        settings.output.display()
-    );
+    say!("! means that a reference is missed; {} in {}", report::STUDY_FILES, settings.output.display());
     Ok(())
 }
 

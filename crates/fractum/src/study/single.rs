@@ -5,11 +5,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use fractum_io::atomic;
-use fractum_io::study::plan::Planned;
-use fractum_io::study::run::{End, Measured, Run};
-use fractum_io::summary::{Status, Summary, hash_text};
 use fractum_math::Vec3;
+use fractum_output::atomic;
+use fractum_output::study::run::{End, Measured, Planned, Run};
+use fractum_output::summary::{Status, Summary, hash_text};
 use fractum_scene::Scene;
 use serde::{Deserialize, Serialize};
 use xxhash_rust::xxh3::Xxh3;

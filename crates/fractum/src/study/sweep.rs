@@ -3,12 +3,11 @@
 
 use std::path::{Path, PathBuf};
 
-use fractum_io::atomic;
-use fractum_io::case::read_case;
-use fractum_io::checkpoint;
-use fractum_io::history::quoted;
-use fractum_io::study::list::{Listed, keys, read};
-use fractum_io::summary::{Status, Summary, hash_text};
+use fractum_case::read_case;
+use fractum_case::study::list::{Listed, keys, read};
+use fractum_output::history::quoted;
+use fractum_output::summary::{Status, Summary, hash_text};
+use fractum_output::{atomic, checkpoint};
 use serde_json::Value;
 
 use crate::error::{ExitCode, Failure};

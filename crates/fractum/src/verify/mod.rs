@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use fractum_io::case::model::Case;
-use fractum_io::case::read_case;
-use fractum_io::expectation::Expectation;
-use fractum_io::number::quantity;
-use fractum_io::summary::{Status, Summary, Wall};
-use fractum_io::verified::{self, Verified};
+use fractum_case::model::Case;
+use fractum_case::read_case;
+use fractum_output::expectation::Expectation;
+use fractum_output::number::quantity;
+use fractum_output::summary::{Status, Summary, Wall};
+use fractum_output::verified::{self, Verified};
+use fractum_prepare::Cache;
 
 use crate::error::Failure;
 use crate::input::load;
@@ -25,7 +26,6 @@ use crate::run::run;
 use crate::simulation::{Options, Outcome};
 use crate::verify::needs::needs;
 use crate::{say, tell};
-use fractum_prepare::Cache;
 
 /// What is verified, and where results go.
 #[derive(Clone, Debug)]
@@ -94,7 +94,7 @@ pub fn verify(selection: &Selection) -> Result<Vec<Verified>, Failure> {
         "pass",
         "seconds"
     );
-    fractum_io::atomic::create_folder(&selection.output)?;
+    fractum_output::atomic::create_folder(&selection.output)?;
     let done = Mutex::new(Done { lines: vec![Vec::new(); cases.len()], wrong: None });
     // A worker that panicked has left the lines of whole cases.
     let lock = || done.lock().unwrap_or_else(PoisonError::into_inner);

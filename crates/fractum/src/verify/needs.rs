@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use fractum_io::case::model::{BodyKind, Case, SolverKind};
+use fractum_case::model::{BodyKind, Case, SolverKind};
 use fractum_scene::statics::NoEquilibrium;
 
 use crate::phases::Part;

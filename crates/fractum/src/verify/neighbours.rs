@@ -4,12 +4,12 @@
 
 use std::path::Path;
 
-use fractum_io::atomic;
-use fractum_io::beside::{End, Row, page};
-use fractum_io::case::model::{Case, Expect, Neighbour, Saying};
-use fractum_io::number::quantity;
-use fractum_io::study::plan::{Planned, Study};
-use fractum_io::study::run::{self, Run};
+use fractum_case::model::{Case, Expect, Neighbour, Saying};
+use fractum_case::study::plan::Study;
+use fractum_output::atomic;
+use fractum_output::beside::{End, Row, page};
+use fractum_output::number::quantity;
+use fractum_output::study::run::{self, Planned, Run};
 
 use crate::error::Failure;
 use crate::say;

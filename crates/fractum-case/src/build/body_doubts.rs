@@ -1,0 +1,214 @@
+//! Doubts about how bodies are held, how they meet, and how finely they are meshed.
+
+use fractum_math::{Vec3, connected};
+use fractum_mesh::{Group, Mesh, topology};
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
+
+use crate::model::{BodyKind, Case, LoadKind, Motion, Selection, SolidBody, SolverKind};
+use crate::{Diagnostic, Place, Spanned};
+
+/// Passages of a wave through a body after which it should be held.
+const PASSAGES: f64 = 10.0;
+/// Elements per node below which a body may have only two elements through its thickness: in space, in the plane.
+const FEW: [f64; 2] = [4.6, 1.5];
+/// Largest over smallest extent above which a body is slender.
+const SLENDER: f64 = 4.0;
+/// Share of the elements that lie at the surface where there are two through the thickness.
+const AT_SURFACE: f64 = 0.98;
+
+/// A solid body of the case with its nodes in the mesh, ascending.
+pub(super) struct Own<'a> {
+    pub(super) name: &'a Spanned<String>,
+    pub(super) solid: &'a SolidBody,
+    pub(super) nodes: Vec<u32>,
+    pub(super) plane: bool,
+}
+
+/// Bodies that hang together by common nodes, as the number of each one's first.
+pub(super) fn pieces(bodies: &[Own]) -> Vec<u32> {
+    let mut owners: Vec<(u32, u32)> =
+        (0..).zip(bodies).flat_map(|(body, own)| own.nodes.iter().map(move |&node| (node, body))).collect();
+    owners.sort_unstable();
+    let shared = owners.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    connected(bodies.len(), shared.map(|pair| [pair[0].1, pair[1].1]))
+}
+
+/// The nodes of the elements of a body.
+///
+/// - `of`: the elements of a group, in the list `all`
+pub(super) fn elements<const N: usize>(
+    mesh: &Mesh,
+    body: &Own,
+    of: fn(&Group) -> &Vec<u32>,
+    all: &[[u32; N]],
+) -> Vec<[u32; N]> {
+    let groups = mesh.group(&body.solid.group.value);
+    groups.iter().flat_map(|group| of(group)).map(|&element| all[element as usize]).collect()
+}
+
+/// What moves or loads a piece at one place.
+struct Driven<'a> {
+    place: &'a Place,
+    nodes: Vec<u32>,
+}
+
+fn driven<'a>(mesh: &Mesh, on: &'a Selection) -> Option<Driven<'a>> {
+    let group = on.group.as_ref().filter(|_| on.within.is_none())?;
+    Some(Driven { place: &group.place, nodes: mesh.group_nodes(&group.value) })
+}
+
+/// Solids that are moved, or loaded by a force, at one place and that nothing holds for long.
+pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
+    let moves = case.solver.kind == SolverKind::Explicit && case.later.is_empty() && case.in_situ.is_none();
+    if bodies.is_empty() || !alone || !moves || mesh.whole.is_some() || pieces(bodies).iter().any(|piece| *piece != 0) {
+        return None;
+    }
+    let thrown = bodies.iter().any(|body| body.solid.initial_velocity.iter().any(Option::is_some));
+    let held = case.supports.iter().any(|support| {
+        support.surface.is_some() || support.motion.iter().flatten().any(|motion| is_at_rest(&motion.value))
+    });
+    if thrown || held {
+        return None;
+    }
+    let by_supports = case.supports.iter().map(|support| driven(mesh, &support.on));
+    let forces = case.loads.iter().filter_map(|load| match &load.kind {
+        LoadKind::Force { on, .. } | LoadKind::Traction { on, .. } => Some(driven(mesh, on)),
+        _ => None,
+    });
+    let all: Vec<Driven> = by_supports.chain(forces).collect::<Option<_>>()?;
+    let [one] = all.as_slice() else { return None };
+    // What is prescribed all over the body needs no other hold.
+    let whole: usize = bodies.iter().map(|body| body.nodes.len()).sum();
+    if 2 * one.nodes.len() > whole {
+        return None;
+    }
+    let passage = passage(case, mesh, bodies);
+    if case.solver.end < PASSAGES * passage {
+        return None;
+    }
+    let found = format!(
+        ": it alone acts on the bodies, which nothing holds: the run lasts {:.0} passages of a wave ({} each)",
+        case.solver.end / passage,
+        quantity(passage, "s")
+    );
+    let note = Diagnostic::warning(Code::Unheld, one.place, found);
+    Some(note.remedy("support the bodies elsewhere; what is thrown needs an initial_velocity"))
+}
+
+/// Speed of a wave along a bar of the material of a body [m/s].
+pub(super) fn wave_speed(case: &Case, body: &Own) -> f64 {
+    let material = &case.materials[body.solid.material];
+    (material.young_modulus / material.density).sqrt()
+}
+
+/// Time that a wave needs to pass through all bodies [s].
+pub(super) fn passage(case: &Case, mesh: &Mesh, bodies: &[Own]) -> f64 {
+    let (low, high) = extent(mesh, bodies);
+    let slowest = bodies.iter().map(|body| wave_speed(case, body)).fold(f64::INFINITY, f64::min);
+    (high - low).norm() / slowest
+}
+
+/// The box around some bodies [m].
+pub(super) fn extent(mesh: &Mesh, bodies: &[Own]) -> (Vec3, Vec3) {
+    let infinite = Vec3::repeat(f64::INFINITY);
+    let places = bodies.iter().flat_map(|body| &body.nodes).map(|&node| mesh.nodes[node as usize]);
+    places.fold((infinite, -infinite), |(low, high), x| (low.inf(&x), high.sup(&x)))
+}
+
+/// One or two elements through the thickness of a body that is bent.
+pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
+    if mesh.whole.is_some() || body.nodes.is_empty() || !is_bent(case, mesh, body) {
+        return None;
+    }
+    let (boundary, shares) = if body.plane {
+        let elements = elements(mesh, body, |group| &group.triangles, &mesh.triangles);
+        if elements.len() as f64 > FEW[1] * body.nodes.len() as f64 {
+            return None;
+        }
+        let sides = topology::boundary_of_triangles(&elements);
+        let boundary = marked(mesh, sides.iter().flat_map(|side| side.nodes));
+        let shares = within(&elements, &boundary);
+        (boundary, shares)
+    } else {
+        let elements = elements(mesh, body, |group| &group.tetrahedra, &mesh.tetrahedra);
+        if elements.len() as f64 > FEW[0] * body.nodes.len() as f64 {
+            return None;
+        }
+        let facets = topology::boundary_of_tetrahedra(&elements);
+        let boundary = marked(mesh, facets.iter().flat_map(|facet| facet.nodes));
+        let shares = within(&elements, &boundary);
+        (boundary, shares)
+    };
+    if shares > 1.0 - AT_SURFACE {
+        return None;
+    }
+    let inner = body.nodes.iter().any(|&node| !boundary[node as usize]);
+    let through = if inner { "two elements" } else { "one element" };
+    let found = format!("= \"{}\": it has {through} through its thickness, and is bent", body.name.value);
+    let note = Diagnostic::warning(Code::ThinMesh, &body.name.place, found);
+    Some(note.remedy("linear elements are too stiff in bending: take three through the thickness, better six"))
+}
+
+fn marked(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<bool> {
+    let mut marked = vec![false; mesh.nodes.len()];
+    nodes.for_each(|node| marked[node as usize] = true);
+    marked
+}
+
+/// Share of the elements that have no node on the boundary.
+fn within<const N: usize>(elements: &[[u32; N]], boundary: &[bool]) -> f64 {
+    let inner = elements.iter().filter(|nodes| nodes.iter().all(|&node| !boundary[node as usize])).count();
+    inner as f64 / elements.len().max(1) as f64
+}
+
+/// Whether a slender body is moved or loaded across: along an axis of the case along which it is thin.
+fn is_bent(case: &Case, mesh: &Mesh, body: &Own) -> bool {
+    let (low, high) = extent(mesh, std::slice::from_ref(body));
+    let size = high - low;
+    let axes = if body.plane { 0..2 } else { 0..3 };
+    let sizes = axes.clone().map(|axis| size[axis]);
+    let [least, most] = sizes.fold([f64::INFINITY, 0.0], |[least, most], one| [least.min(one), most.max(one)]);
+    if SLENDER * least > most {
+        return false;
+    }
+    let own = |on: &Selection| -> Vec<u32> {
+        let Some(group) = on.group.as_ref().filter(|_| on.within.is_none()) else { return Vec::new() };
+        let mut nodes = mesh.group_nodes(&group.value);
+        nodes.retain(|node| body.nodes.binary_search(node).is_ok());
+        nodes
+    };
+    let held: Vec<Vec<u32>> = case.supports.iter().map(|support| own(&support.on)).collect();
+    // What is guided along its length does not bend.
+    if held.iter().all(Vec::is_empty) || held.iter().any(|nodes| 5 * nodes.len() > 2 * body.nodes.len()) {
+        return false;
+    }
+    let flat = |nodes: &[u32], axis: usize| {
+        let places = nodes.iter().map(|&node| mesh.nodes[node as usize][axis]);
+        let [low, high] = places.fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        high - low < 0.1 * least
+    };
+    let thin: Vec<usize> = axes.filter(|&axis| size[axis] <= 1.1 * least).collect();
+    thin.into_iter().any(|axis| {
+        let moved = |motion: &Option<Spanned<Motion>>| motion.as_ref().is_some_and(|motion| !is_at_rest(&motion.value));
+        let by_support =
+            case.supports.iter().zip(&held).any(|(support, nodes)| !nodes.is_empty() && moved(&support.motion[axis]));
+        let by_load = case.loads.iter().any(|load| match &load.kind {
+            LoadKind::Force { on, force: components } | LoadKind::Traction { on, traction: components } => {
+                components[axis].is_some() && !own(on).is_empty()
+            }
+            LoadKind::Gravity { acceleration } => acceleration[axis].is_some(),
+            other => {
+                let LoadKind::Pressure { on, .. } = other else { return false };
+                let nodes = own(on);
+                !nodes.is_empty() && flat(&nodes, axis)
+            }
+        });
+        by_support || by_load || body.solid.initial_velocity[axis].is_some()
+    })
+}
+
+fn is_at_rest(motion: &Motion) -> bool {
+    matches!(motion, Motion::Fixed)
+}

@@ -1,0 +1,239 @@
+//! Supports and loads on the groups of the mesh.
+
+use std::collections::HashMap;
+
+use fractum_fem::{ElementKind, facet_area};
+use fractum_math::Vec3;
+use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
+
+use super::bodies::{Numbering, Part};
+use super::{Context, function, use_in_words};
+use crate::Spanned;
+use crate::model::{self, Components, GroupUse, InCracks, LoadKind, Selection};
+
+impl Context<'_> {
+    pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
+        let case = self.case;
+        let mut supports = Vec::new();
+        for support in &case.supports {
+            if self.names_particles(&support.on) {
+                continue;
+            }
+            if let Some(axes) = &support.fix_rotation {
+                self.error(&axes.place, ": nodes have no rotation", "a set of particles; remove the key");
+            }
+            let nodes = self.selected_nodes(&support.on, numbering);
+            for (axis, motion) in support.motion.iter().enumerate() {
+                let Some(motion) = motion else { continue };
+                supports.push(Support::new(support.label(), nodes.clone(), axis, motion_of(&motion.value)));
+            }
+        }
+        supports
+    }
+
+    /// The loads on nodes, or on particles.
+    pub(super) fn loads(&mut self, points: &LoadedPoints) -> Vec<Load> {
+        let (case, of_particles) = (self.case, matches!(points, LoadedPoints::Particles(_)));
+        let mut loads = Vec::new();
+        for load in &case.loads {
+            if load.kind.on().is_some_and(|(on, _)| self.names_particles(on) != of_particles) {
+                continue;
+            }
+            match (&load.kind, points) {
+                (LoadKind::Force { on, force }, _) => push_nodal(&mut loads, &self.shares(on, points), force),
+                (LoadKind::Gravity { acceleration }, _) => {
+                    for (axis, value) in acceleration.iter().enumerate() {
+                        let Some(value) = value else { continue };
+                        loads.push(Load::Gravity(Gravity { axis, value: function(&value.value) }));
+                    }
+                }
+                (LoadKind::Traction { on, traction }, LoadedPoints::Nodes(numbering, surface)) => {
+                    let facets = self.selected_facets(on, numbering, surface);
+                    push_nodal(&mut loads, &surface.areas(&facets), traction);
+                }
+                (LoadKind::Pressure { on, pressure, in_cracks }, LoadedPoints::Nodes(numbering, surface)) => {
+                    let (facets, thickness) = (self.selected_facets(on, numbering, surface), surface.thickness);
+                    let value = function(&pressure.value);
+                    loads.push(match in_cracks {
+                        None => Load::Pressure(Pressure { facets, thickness, value }),
+                        Some(InCracks { front_speed }) => {
+                            self.refuse_partial_mouth(on, &facets, &loads);
+                            Load::CrackPressure(CrackPressure::new(facets, thickness, value, *front_speed))
+                        }
+                    });
+                }
+                // Particles have no facets: refused before.
+                (LoadKind::Traction { .. } | LoadKind::Pressure { .. }, LoadedPoints::Particles(_)) => {}
+            }
+        }
+        loads
+    }
+
+    /// Cracks are entered from groups of facets that are the same or have no facet in common.
+    fn refuse_partial_mouth(&mut self, on: &Selection, facets: &[[u32; 3]], loads: &[Load]) {
+        let others = loads.iter().filter_map(|load| match load {
+            Load::CrackPressure(load) if load.facets != facets => Some(&load.facets),
+            _ => None,
+        });
+        let shared = others.flatten().find(|facet| facets.contains(facet));
+        if let (Some(_), Some(place)) = (shared, on.place()) {
+            let found = format!("= \"{}\": shares facets with another load that enters cracks", on.label());
+            self.error(&place.clone(), found, "the same facets, or none in common");
+        }
+    }
+
+    /// Shares of a total force: by area where facets or particles are meant, else equal.
+    pub(super) fn shares(&mut self, on: &Selection, points: &LoadedPoints) -> Vec<(u32, f64)> {
+        let areas = match (points, &on.group) {
+            (LoadedPoints::Nodes(numbering, surface), _) => surface.areas(&self.facets(on, numbering, surface)),
+            (LoadedPoints::Particles(bonded), Some(group)) => {
+                let particles = self.selected_particles(on, group, bonded);
+                particles.into_iter().map(|i| (i, bonded.particles.radius[i as usize].powi(2))).collect()
+            }
+            (LoadedPoints::Particles(_), None) => Vec::new(),
+        };
+        let total: f64 = areas.iter().map(|(_, area)| area).sum();
+        match points {
+            LoadedPoints::Nodes(numbering, _) if total <= 0.0 => {
+                let nodes = self.selected_nodes(on, numbering);
+                let share = 1.0 / nodes.len().max(1) as f64;
+                nodes.into_iter().map(|node| (node, share)).collect()
+            }
+            _ => areas.into_iter().map(|(point, area)| (point, area / total)).collect(),
+        }
+    }
+
+    /// Outward facets that are meant; an error if there are none on the surface.
+    pub(super) fn selected_facets(
+        &mut self,
+        on: &Selection,
+        numbering: &Numbering,
+        surface: &Surface,
+    ) -> Vec<[u32; 3]> {
+        let facets = self.facets(on, numbering, surface);
+        if let (true, Some(place)) = (facets.is_empty(), on.place()) {
+            let found = on.group.as_ref().map_or_else(|| "holds for no facet".into(), |g| format!("= \"{}\"", g.value));
+            self.error(&place.clone(), found, use_in_words(GroupUse::Facets));
+        }
+        facets
+    }
+
+    /// Outward facets of a group, or all without one, of which all nodes fulfil the condition.
+    fn facets(&self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let mut facets = match &on.group {
+            Some(group) => self.facets_in_file(group, numbering, surface),
+            None => surface.facets.to_vec(),
+        };
+        if let Some(within) = &on.within {
+            let inside = |&n: &u32| within.value.holds_at(numbering.positions[n as usize]);
+            facets.retain(|facet| facet.iter().all(inside));
+        }
+        facets
+    }
+
+    fn facets_in_file(&self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+        let scene = |n: u32| numbering.scene_node[n as usize];
+        let mut facets = Vec::new();
+        for group in self.mesh.group(&group.value) {
+            if surface.thickness > 0.0 {
+                let lines = group.lines.iter().map(|&l| self.mesh.lines[l as usize].map(scene));
+                facets.extend(lines.filter_map(|[a, b]| surface.outward([a, b, b])));
+            } else {
+                let triangles = group.triangles.iter().map(|&t| self.mesh.triangles[t as usize].map(scene));
+                facets.extend(triangles.filter_map(|t| surface.outward(t)));
+            }
+        }
+        facets
+    }
+}
+
+/// How a support moves, as the scene takes it.
+pub(super) fn motion_of(motion: &model::Motion) -> Motion {
+    match motion {
+        model::Motion::Fixed => Motion::Fixed,
+        model::Motion::Velocity(v) => Motion::Velocity(function(v)),
+        model::Motion::Displacement(u) => Motion::Displacement(function(u)),
+    }
+}
+
+fn push_nodal(loads: &mut Vec<Load>, points: &[(u32, f64)], components: &Components) {
+    for (axis, value) in components.iter().enumerate() {
+        if let Some(value) = value {
+            loads.push(Load::Nodal(NodalForce { points: points.to_vec(), axis, value: function(&value.value) }));
+        }
+    }
+}
+
+/// The points that loads act on.
+pub(super) enum LoadedPoints<'a> {
+    /// Nodes of solids, with their surface.
+    Nodes(&'a Numbering, &'a Surface<'a>),
+    /// Particles.
+    Particles(&'a Bonded),
+}
+
+/// The surface of the solids, searchable by the nodes of a facet.
+pub(super) struct Surface<'a> {
+    pub(super) facets: &'a [[u32; 3]],
+    by_nodes: HashMap<[u32; 3], [u32; 3]>,
+    /// Thickness of plane bodies [m], 0 in space.
+    thickness: f64,
+    positions: &'a [Vec3],
+}
+
+impl<'a> Surface<'a> {
+    pub(super) fn new(boundary: &'a [[u32; 3]], parts: &[Part], positions: &'a [Vec3]) -> Self {
+        let plane = parts.iter().find(|part| part.shape == ElementKind::T3);
+        let thickness = plane.map_or(0.0, |part| part.body.depth);
+        let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
+        Surface { facets: boundary, by_nodes, thickness, positions }
+    }
+
+    /// Outward normal of a facet without load, as long as its area [m²].
+    pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
+        let corners = facet.map(|n| self.positions[n as usize]);
+        facet_area(corners, (self.thickness > 0.0).then_some(self.thickness))
+    }
+
+    /// Middle of a facet without load [m].
+    pub(super) fn middle(&self, facet: &[u32; 3]) -> Vec3 {
+        let corners = self.corners(facet);
+        corners.iter().map(|&n| self.positions[n as usize]).sum::<Vec3>() / corners.len() as f64
+    }
+
+    /// Nodes of a facet, each once.
+    pub(super) fn corners<'f>(&self, facet: &'f [u32; 3]) -> &'f [u32] {
+        &facet[..if self.thickness > 0.0 { 2 } else { 3 }]
+    }
+
+    /// The facet with these nodes, oriented outwards.
+    pub(super) fn outward(&self, nodes: [u32; 3]) -> Option<[u32; 3]> {
+        self.by_nodes.get(&sorted(nodes)).copied()
+    }
+
+    /// Area that belongs to each node of the facets [m²], ascending by node.
+    pub(super) fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
+        let mut shares: Vec<(u32, f64)> = Vec::new();
+        for facet in facets {
+            let corners = self.corners(facet);
+            let share = self.area_vector(facet).norm() / corners.len() as f64;
+            shares.extend(corners.iter().map(|&node| (node, share)));
+        }
+        shares.sort_by_key(|s| s.0);
+        let mut merged: Vec<(u32, f64)> = Vec::new();
+        for (node, area) in shares {
+            match merged.last_mut() {
+                Some(last) if last.0 == node => last.1 += area,
+                _ => merged.push((node, area)),
+            }
+        }
+        merged
+    }
+}
+
+/// The nodes of a facet whatever its direction; an edge, in whatever order, repeats its higher node.
+pub(super) fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
+    let edge = nodes[1] == nodes[2];
+    nodes.sort_unstable();
+    if edge { [nodes[0], nodes[2], nodes[2]] } else { nodes }
+}

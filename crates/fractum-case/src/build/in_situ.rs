@@ -1,0 +1,230 @@
+//! Stress of the solids before the run: tractions of the far field, and what must fit to them.
+
+use std::sync::Arc;
+
+use fractum_fem::{Elastic, Plane, Solid};
+use fractum_math::{Mat3, Sym3, Vec3};
+use fractum_output::number::quantity;
+use fractum_scene::{Load, NodalForce};
+use nalgebra::{Matrix6, Vector6};
+
+use super::Context;
+use super::bodies::Numbering;
+use super::conditions::Surface;
+use crate::Place;
+use crate::model::{InSitu, LoadKind, Selection};
+
+/// How far a stress may be from linear, over its largest component; and forces from balance, over the largest.
+const LINEAR: f64 = 1e-9;
+const BALANCE: f64 = 1e-6;
+/// How far supports may be from following the far field, over its displacement across the body.
+const FOLLOWS: f64 = 1e-6;
+
+/// A stress σ(x) = σ⁰ + Σ x_k ∂σ/∂x_k about a point.
+struct FarField {
+    centre: Vec3,
+    size: Vec3,
+    stress: Sym3,
+    slope: [Sym3; 3],
+    largest: f64,
+}
+
+/// Tractions of the in-situ stress on facets; none where the case has no such stress, or where it does not fit.
+///
+/// - `on`: facets of supports that answer to motion; those of the groups of the stress are added
+pub(super) fn in_situ_loads(
+    context: &mut Context<'_>,
+    numbering: &Numbering,
+    surface: &Surface,
+    solid: &Solid,
+    mut on: Vec<[u32; 3]>,
+) -> Vec<Load> {
+    let Some(stress) = &context.case.in_situ else { return Vec::new() };
+    for group in &stress.groups {
+        on.extend(context.selected_facets(&Selection::of_group(group.clone()), numbering, surface));
+    }
+    on.sort_unstable();
+    on.dedup();
+    let Some(field) = far_field(context, stress, &numbering.positions) else { return Vec::new() };
+    if on.is_empty() && context.diagnostics.is_empty() {
+        context.error(&stress.place, " acts on no facet", "absorbing or elastic supports, or groups of facets");
+    }
+    check_weight(context, &stress.place, &field, solid);
+    if context.diagnostics.is_empty() {
+        check_in_situ_supports(context, &field, solid, numbering);
+    }
+    if context.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }
+}
+
+/// The stress as a linear function.
+fn far_field(context: &mut Context<'_>, stress: &InSitu, positions: &[Vec3]) -> Option<FarField> {
+    let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+    positions.iter().for_each(|p| (low, high) = (low.inf(p), high.sup(p)));
+    let (centre, size) = ((low + high) * 0.5, high - low);
+    let slope = [0, 1, 2].map(|k| {
+        let half = Vec3::ith(k, 0.5 * size[k]);
+        let difference = stress.at(centre + half) - stress.at(centre - half);
+        if size[k] > 0.0 { difference * (1.0 / size[k]) } else { Sym3::ZERO }
+    });
+    let largest = positions.iter().map(|&p| largest_of(stress.at(p))).fold(0.0, f64::max);
+    let field = FarField { centre, size, stress: stress.at(centre), slope, largest };
+    let bent = |p: &&Vec3| {
+        let off = stress.at(**p) - field.at(**p);
+        off.0.iter().any(|c| c.is_nan()) || largest_of(off) > LINEAR * field.largest
+    };
+    if let Some(p) = positions.iter().find(bent) {
+        let found = format!(".stress is not linear in x, y, z near ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
+        context.error(&stress.place, found, "finite components that grow in proportion to depth or not at all");
+        return None;
+    }
+    Some(field)
+}
+
+/// div σ + ρ g = 0, or nothing can be at rest.
+fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, solid: &Solid) {
+    let mut gravity = Vec3::zeros();
+    for load in &context.case.loads {
+        if let LoadKind::Gravity { acceleration } = &load.kind {
+            for (axis, value) in acceleration.iter().enumerate() {
+                gravity[axis] += value.as_ref().map_or(0.0, |value| value.value.value(0.0, Vec3::zeros()));
+            }
+        }
+    }
+    let axes = if solid.is_plane() { 2 } else { 3 };
+    let divergence = Vec3::from_fn(|a, _| (0..axes).map(|k| field.slope[k].to_matrix()[(a, k)]).sum::<f64>());
+    for body in 0..solid.body_count() {
+        let density = solid.body(body).elastic.density;
+        let weight = gravity * density;
+        let scale = field.largest / field.size.max() * BALANCE + BALANCE * weight.norm();
+        let Some(axis) = (0..axes).find(|&a| (divergence[a] + weight[a]).abs() > scale) else { continue };
+        let name = ["x", "y", "z"][axis];
+        let found = format!(
+            ": the divergence of the stress along {name} is {}, and the weight of body \"{}\" is {}",
+            quantity(divergence[axis], "Pa/m"),
+            solid.body(body).name,
+            quantity(weight[axis], "Pa/m")
+        );
+        let fitting = quantity(-divergence[axis] / density, "m/s^2");
+        context.error(
+            place,
+            found,
+            format!("gravity {name} = \"{fitting}\" among the loads, or a stress that goes with it"),
+        );
+        return;
+    }
+}
+
+/// Supports must be able to follow the displacements of the far field: what they hold cannot be strained.
+fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &Solid, numbering: &Numbering) {
+    let elastic = |body: usize| solid.body(body).elastic;
+    let same = |a: Elastic, b: Elastic| a.young_modulus == b.young_modulus && a.poisson_ratio == b.poisson_ratio;
+    if (1..solid.body_count()).any(|body| !same(elastic(0), elastic(body))) {
+        return; // Layers have no common far field: their supports show in the balance of forces.
+    }
+    let plane = solid.is_plane().then(|| solid.body(0).plane);
+    let mut held: Vec<(usize, Vec3, usize)> = Vec::new();
+    for (index, support) in context.case.supports.iter().enumerate() {
+        if context.names_particles(&support.on) || support.motion.iter().all(Option::is_none) {
+            continue;
+        }
+        for node in context.selected_nodes(&support.on, numbering) {
+            let axes = (0..3).filter(|&axis| support.motion[axis].is_some());
+            held.extend(axes.map(|axis| (index, numbering.positions[node as usize], axis)));
+        }
+    }
+    let displacement = field.displacements(elastic(0), plane);
+    let rows = held.iter().map(|&(_, place, axis)| (rigid(place, field, axis), displacement(place)[axis]));
+    let (mut gram, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
+    for (row, u) in rows.clone() {
+        gram += row * row.transpose();
+        right -= row * u;
+    }
+    let Some(motion) =
+        gram.pseudo_inverse(1e-9 * gram.trace().max(f64::MIN_POSITIVE)).ok().map(|inverse| inverse * right)
+    else {
+        return;
+    };
+    let strain = field.largest / elastic(0).young_modulus;
+    let off = rows.map(|(row, u)| (row.dot(&motion) + u).abs());
+    let worst = off.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    let Some((row, off)) = worst.filter(|(_, off)| *off > FOLLOWS * strain * field.size.norm()) else { return };
+    let (support, place, axis) = held[row];
+    let support = &context.case.supports[support];
+    let found = format!(
+        "= \"{}\" contradicts the in-situ stress: it holds {} at ({:.4e}, {:.4e}, {:.4e}) m, which the stress moves by {}",
+        support.label(),
+        ["x", "y", "z"][axis],
+        place.x,
+        place.y,
+        place.z,
+        quantity(off, "m")
+    );
+    let at = support.on.place().cloned().unwrap_or_else(|| context.whole_case());
+    context.error(
+        &at,
+        found,
+        "supports on planes of symmetry, without shear stress; or none, with absorbing or elastic ones",
+    );
+}
+
+/// A rigid motion of a place along an axis: translations, and rotations times the size of the body.
+fn rigid(place: Vec3, field: &FarField, axis: usize) -> Vector6<f64> {
+    let x = (place - field.centre) / field.size.norm();
+    let turn = |about: Vec3| about.cross(&x)[axis];
+    let along = Vec3::ith(axis, 1.0);
+    Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()))
+}
+
+fn largest_of(stress: Sym3) -> f64 {
+    stress.0.iter().map(|c| c.abs()).fold(0.0, f64::max)
+}
+
+impl FarField {
+    fn at(&self, place: Vec3) -> Sym3 {
+        let x = place - self.centre;
+        self.stress + self.slope[0] * x.x + self.slope[1] * x.y + self.slope[2] * x.z
+    }
+
+    /// Displacements u_i = ε⁰_ij x_j + ½ (ε_ij,k + ε_ik,j − ε_jk,i) x_j x_k of the linear strain that goes with the stress.
+    ///
+    /// - `plane`: state of plane bodies; none in space
+    fn displacements(&self, elastic: Elastic, plane: Option<Plane>) -> impl Fn(Vec3) -> Vec3 + use<> {
+        let (e, nu) = (elastic.young_modulus, elastic.poisson_ratio);
+        let strain = |stress: Sym3| -> Mat3 {
+            let mut sigma = stress.to_matrix();
+            if let Some(plane) = plane {
+                sigma = Mat3::new(sigma.m11, sigma.m12, 0.0, sigma.m12, sigma.m22, 0.0, 0.0, 0.0, 0.0);
+                if plane == Plane::Strain {
+                    sigma.m33 = nu * (sigma.m11 + sigma.m22);
+                }
+            }
+            (sigma * (1.0 + nu) - Mat3::identity() * (nu * sigma.trace())) / e
+        };
+        let (constant, slope, centre) = (strain(self.stress), self.slope.map(strain), self.centre);
+        move |place| {
+            let x = place - centre;
+            let quadratic = |i: usize| -> f64 {
+                let term = |j: usize, k: usize| slope[k][(i, j)] + slope[j][(i, k)] - slope[i][(j, k)];
+                (0..9).map(|jk| 0.5 * term(jk / 3, jk % 3) * x[jk / 3] * x[jk % 3]).sum()
+            };
+            constant * x + Vec3::from_fn(|i, _| quadratic(i))
+        }
+    }
+}
+
+/// Tractions σ n as forces on nodes: on every corner the integral of its share of a traction that is linear.
+fn tractions(field: &FarField, facets: &[[u32; 3]], surface: &Surface, positions: &[Vec3]) -> Vec<Load> {
+    let mut forces: Vec<(u32, Vec3)> = Vec::new();
+    for facet in facets {
+        let (area, corners) = (surface.area_vector(facet), surface.corners(facet));
+        let count = corners.len() as f64;
+        let at = |node: u32| field.at(positions[node as usize]).to_matrix() * area;
+        let sum: Vec3 = corners.iter().map(|&node| at(node)).sum();
+        forces.extend(corners.iter().map(|&node| (node, (sum + at(node)) / (count * (count + 1.0)))));
+    }
+    let load = |axis: usize| {
+        let points = forces.iter().map(|(node, force)| (*node, force[axis])).collect();
+        Load::Nodal(NodalForce { points, axis, value: Arc::new(|_, _| 1.0) })
+    };
+    [0, 1, 2].map(load).into()
+}

@@ -1,0 +1,285 @@
+//! Doubts about how bodies meet: nodes in the same places, solids within each other, tools that touch nothing, damping without effect.
+
+use std::collections::BTreeMap;
+
+use fractum_math::Vec3;
+use fractum_mesh::{Coincident, Mesh, coincident_nodes};
+use fractum_output::number::{percent, quantity};
+use fractum_output::warning::Code;
+use fractum_scene::ContactParameters;
+
+use super::body_doubts::{Own, elements, extent, pieces};
+use crate::Diagnostic;
+use crate::model::{Body, BodyKind, Case, Motion, RigidBody, RigidShape, SolverKind, Support};
+
+/// Elements of a body that are looked for in another one.
+const SAMPLE: usize = 2000;
+/// Instants at which the motion of a tool is looked at.
+const LOOKS: u32 = 1000;
+
+/// Plane solids that could meet, and pass through each other.
+pub(super) fn meetings(case: &Case, bodies: &[Own]) -> Option<Diagnostic> {
+    if case.solver.kind != SolverKind::Explicit || !bodies.iter().any(|body| body.plane) {
+        return None;
+    }
+    // Meshes that a command makes may not be there yet.
+    if bodies.iter().any(|body| body.nodes.is_empty()) {
+        return None;
+    }
+    let pieces = pieces(bodies);
+    let other = pieces.iter().position(|piece| *piece != 0)?;
+    let [first, second] = [&bodies[0], &bodies[other]].map(|body| &body.name.value);
+    let found = format!("= \"{second}\": it has no nodes in common with \"{first}\", and plane solids do not touch");
+    let note = Diagnostic::warning(Code::NoContact, &bodies[other].name.place, found);
+    Some(note.remedy("they pass through each other where they meet: make one of them rigid, or model both in space"))
+}
+
+/// Bodies whose nodes lie in the same places without being the same, where nothing makes them touch.
+pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    if bodies.len() < 2 {
+        return Vec::new();
+    }
+    let touches = case.solver.kind == SolverKind::Explicit && !bodies.iter().any(|body| body.plane);
+    // Who says how bodies touch means that they do.
+    let says_how = |body: &Own| body.solid.surface(&case.materials) != ContactParameters::default();
+    let sets: Vec<&[u32]> = bodies.iter().map(|body| body.nodes.as_slice()).collect();
+    let mut pairs = BTreeMap::<[usize; 2], (usize, u32)>::new();
+    for Coincident { bodies, nodes: [node, _] } in coincident_nodes(mesh, &sets) {
+        pairs.entry(bodies).or_insert((0, node)).0 += 1;
+    }
+    let doubt = |(pair, (count, node)): ([usize; 2], (usize, u32))| {
+        let [first, second] = pair.map(|index| &bodies[index]);
+        if touches && (says_how(first) || says_how(second)) {
+            return None;
+        }
+        let so = if touches { "they touch there, and are not joined" } else { "nothing joins them" };
+        let at = mesh.nodes[node as usize];
+        let at = [at.x, at.y, at.z].map(|x| quantity(x, "m")).join(", ");
+        let found = format!(
+            "= \"{}\": {count} of its nodes lie on nodes of \"{}\", such as that at ({at}): {so}",
+            second.name.value, first.name.value
+        );
+        let note = Diagnostic::warning(Code::CoincidentNodes, &second.name.place, found);
+        let is_joined = |body: &Own| {
+            let join = case.mesh.as_ref().and_then(|mesh| mesh.join.as_ref());
+            join.is_some_and(|join| join.value.iter().any(|solid| solid.body == body.name.value))
+        };
+        let joined = if is_joined(first) && is_joined(second) {
+            "mesh.join leaves them, as no face has all of its nodes in common: mesh both sides alike"
+        } else {
+            "set mesh.join = true, or mesh both with common nodes"
+        };
+        let contact = if touches { "; if they only touch, say so by contact in a material" } else { "" };
+        Some(note.remedy(format!("{joined}{contact}")))
+    };
+    pairs.into_iter().filter_map(doubt).collect()
+}
+
+/// Solids that lie within each other: their mass and stiffness are counted twice there.
+pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    let boxes: Vec<(Vec3, Vec3)> = bodies.iter().map(|body| extent(mesh, std::slice::from_ref(body))).collect();
+    let axes = if bodies.iter().all(|body| body.plane) { 0..2 } else { 0..3 };
+    let apart = |a: usize, b: usize| {
+        let [(low, high), (from, to)] = [boxes[a], boxes[b]];
+        axes.clone().any(|axis| high[axis] <= from[axis] || to[axis] <= low[axis])
+    };
+    let mut doubts = Vec::new();
+    for (index, second) in bodies.iter().enumerate() {
+        for (_, first) in bodies[..index].iter().enumerate().filter(|(before, _)| !apart(*before, index)) {
+            // A body of few large elements may hold none of the middles of the other.
+            let shares = [(second, first), (first, second)].map(|(own, other)| within(mesh, own, other));
+            let Some((share, of)) = shares.into_iter().zip([second, first]).find(|(share, _)| *share > 0.0) else {
+                continue;
+            };
+            let other = if std::ptr::eq(of, second) { first } else { second };
+            let found = format!(
+                "= \"{}\": {} of its elements lie within \"{}\", and are counted twice",
+                of.name.value,
+                percent(share),
+                other.name.value
+            );
+            let note = Diagnostic::warning(Code::InitialOverlap, &of.name.place, found);
+            doubts.push(note.remedy("cut one of them out of the other (Boolean difference, or fragments, in Gmsh)"));
+        }
+    }
+    doubts
+}
+
+/// Share of the elements of a body whose middle lies in an element of another one; of many a sample is taken.
+fn within(mesh: &Mesh, own: &Own, other: &Own) -> f64 {
+    match (own.plane, other.plane) {
+        (true, true) => {
+            let of = |body: &Own| elements(mesh, body, |group| &group.triangles, &mesh.triangles);
+            share_within(mesh, (own, &of(own)), (other, &of(other)))
+        }
+        (false, false) => {
+            let of = |body: &Own| elements(mesh, body, |group| &group.tetrahedra, &mesh.tetrahedra);
+            share_within(mesh, (own, &of(own)), (other, &of(other)))
+        }
+        _ => 0.0,
+    }
+}
+
+fn share_within<const N: usize>(
+    mesh: &Mesh,
+    (own, elements): (&Own, &[[u32; N]]),
+    (other, others): (&Own, &[[u32; N]]),
+) -> f64 {
+    let [(low, high), (from, to)] = [own, other].map(|body| extent(mesh, std::slice::from_ref(body)));
+    let (low, high) = (low.sup(&from), high.inf(&to));
+    let corners = |nodes: &[u32; N]| nodes.map(|node| mesh.nodes[node as usize]);
+    let inside = |x: &Vec3| (0..N - 1).all(|axis| low[axis] < x[axis] && x[axis] < high[axis]);
+    let middles = elements.iter().map(|nodes| corners(nodes).iter().sum::<Vec3>() / N as f64).filter(inside);
+    let mut middles: Vec<Vec3> = middles.collect();
+    let count = middles.len();
+    let stride = count.div_ceil(SAMPLE).max(1);
+    middles = middles.into_iter().step_by(stride).collect();
+    middles.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
+    let mut found = vec![false; middles.len()];
+    for corners in others.iter().map(corners) {
+        let [first, last] =
+            corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x.x), h.max(x.x)]);
+        let begin = middles.partition_point(|x| x.x < first);
+        let near = middles[begin..].iter().take_while(|x| x.x <= last).enumerate();
+        near.filter(|(_, x)| holds(&corners, x)).for_each(|(at, _)| found[begin + at] = true);
+    }
+    let looked = middles.len().max(1) as f64;
+    found.into_iter().filter(|found| *found).count() as f64 / looked * count as f64 / elements.len().max(1) as f64
+}
+
+/// Whether a triangle or a tetrahedron holds a point.
+fn holds<const N: usize>(corners: &[Vec3; N], x: &Vec3) -> bool {
+    let size = |corners: &[Vec3; N]| {
+        let [a, b] = [1, 2].map(|corner| corners[corner] - corners[0]);
+        let across = if N == 3 { Vec3::z() } else { corners[N - 1] - corners[0] };
+        a.cross(&b).dot(&across)
+    };
+    let whole = size(corners);
+    // A place on a face belongs to both elements.
+    let inside = |corner: usize| {
+        let mut with = *corners;
+        with[corner] = *x;
+        size(&with) * whole >= 0.0
+    };
+    whole != 0.0 && (0..N).all(inside)
+}
+
+/// Tools that are moved, and meet nothing on their way.
+pub(super) fn missing(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    let rests = |body: &Own| body.solid.initial_velocity.iter().all(Option::is_none);
+    let known = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_) | BodyKind::Rigid(_)));
+    let moved =
+        |support: &Support| support.motion.iter().flatten().any(|motion| !matches!(motion.value, Motion::Fixed));
+    // What is loaded or moved itself may come to meet the tool.
+    let stays = case.loads.is_empty() && bodies.iter().all(rests) && !case.supports.iter().any(moved);
+    // Meshes that a command makes may not be there yet.
+    let there = bodies.iter().all(|body| !body.nodes.is_empty());
+    if bodies.is_empty() || !there || !stays || !known || !case.later.is_empty() {
+        return Vec::new();
+    }
+    let (mut low, mut high) = extent(mesh, bodies);
+    if bodies.iter().all(|body| body.plane) {
+        (low.z, high.z) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    let doubt = |body: &Body| {
+        let BodyKind::Rigid(rigid) = &body.kind else { return None };
+        let way = way(case, rigid)?;
+        let apart = way.iter().filter_map(|offset| distance(mesh, rigid, *offset, (low, high))).reduce(f64::min)?;
+        if apart <= 0.0 {
+            return None;
+        }
+        let longest = way.iter().map(Vec3::norm).fold(0.0, f64::max);
+        let [longest, apart] = [longest, apart].map(|length| quantity(length, "m"));
+        let found =
+            format!("= \"{}\": it moves by {longest}, and comes no nearer to the bodies than {apart}", body.name.value);
+        let note = Diagnostic::warning(Code::Misses, &body.name.place, found);
+        Some(note.remedy("check its place, its direction of motion, and the end of the run"))
+    };
+    case.bodies.iter().filter_map(doubt).collect()
+}
+
+/// Damping of contact that counts nowhere: driven shapes hold the nodes of solids, and there is nothing else to touch.
+pub(super) fn undamped(case: &Case, bodies: &[Own]) -> Vec<Diagnostic> {
+    let moves = std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Explicit);
+    let held = |body: &Body| match &body.kind {
+        // What is thrown meets springs.
+        BodyKind::Solid(solid) => !solid.damage && solid.initial_velocity.iter().all(Option::is_none),
+        BodyKind::Rigid(rigid) => {
+            let has_facets = matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. });
+            !(has_facets || rigid.inside || rigid.free_rotation || rigid.free.contains(&true))
+        }
+        _ => false,
+    };
+    let is_driven = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Rigid(_)));
+    // Meshes that a command makes may not be there yet.
+    let there = bodies.iter().all(|body| !body.nodes.is_empty());
+    let alone = bodies.iter().all(|body| body.plane) || (there && pieces(bodies).iter().all(|piece| *piece == 0));
+    if !moves || !is_driven || !alone || case.solver.subcycling.is_some() || !case.bodies.iter().all(held) {
+        return Vec::new();
+    }
+    let doubt = |body: &Body| {
+        if !matches!(body.kind, BodyKind::Solid(_) | BodyKind::Rigid(_)) {
+            return None;
+        }
+        let own = body.kind.surface(&case.materials);
+        if own.damping_ratio == ContactParameters::default().damping_ratio {
+            return None;
+        }
+        let found = format!("= \"{}\": the damping ratio or restitution of its contact has no effect", body.name.value);
+        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
+        Some(
+            note.remedy(
+                "driven rigid bodies stop the nodes of solids at once; remove it, and damp the solid by damping",
+            ),
+        )
+    };
+    case.bodies.iter().filter_map(doubt).collect()
+}
+
+/// Where a rigid body that does not turn is during the run, from where it starts [m]; none where that depends on forces, or it stays.
+fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
+    let pushed =
+        rigid.force.iter().any(Option::is_some) || rigid.free_rotation || rigid.spin.iter().any(Option::is_some);
+    if pushed || rigid.inside {
+        return None;
+    }
+    let step = case.solver.end / f64::from(LOOKS);
+    let speed = |axis: usize, time: f64| {
+        let thrown = rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.at(Vec3::zeros()));
+        rigid.velocity[axis].as_ref().map_or(thrown, |own| own.value.value(time, Vec3::zeros()))
+    };
+    let mut offset = Vec3::zeros();
+    let mut way = vec![offset];
+    for look in 0..LOOKS {
+        let middle = step * (f64::from(look) + 0.5);
+        offset += step * Vec3::new(speed(0, middle), speed(1, middle), speed(2, middle));
+        way.push(offset);
+    }
+    way.iter().any(|offset| *offset != Vec3::zeros()).then_some(way)
+}
+
+/// Distance of a rigid body that has moved from a box [m]; at most zero where they may meet.
+fn distance(mesh: &Mesh, rigid: &RigidBody, offset: Vec3, (low, high): (Vec3, Vec3)) -> Option<f64> {
+    let (from, to) = match &rigid.shape {
+        RigidShape::Plane { point, normal } => {
+            let nearest = Vec3::from_fn(|axis, _| if normal[axis] > 0.0 { low[axis] } else { high[axis] });
+            let along = (0..3).filter(|&axis| normal[axis] != 0.0);
+            return Some(along.map(|axis| normal[axis] * (nearest[axis] - point[axis] - offset[axis])).sum());
+        }
+        RigidShape::Box { point, size } => (*point, point + size),
+        RigidShape::Sphere { point, radius } => (point - Vec3::repeat(*radius), point + Vec3::repeat(*radius)),
+        RigidShape::Cylinder { point, axis, length, radius } => {
+            let (end, around) = (point + axis * *length, Vec3::repeat(*radius));
+            (point.inf(&end) - around, point.sup(&end) + around)
+        }
+        RigidShape::Group { group, .. } => {
+            let nodes = mesh.group_nodes(&group.value);
+            let first = mesh.nodes[*nodes.first()? as usize];
+            let places = nodes.iter().map(|&node| mesh.nodes[node as usize]);
+            places.fold((first, first), |(low, high), x| (low.inf(&x), high.sup(&x)))
+        }
+        RigidShape::Stl { .. } => return None,
+    };
+    let gap = |axis: usize| f64::max(from[axis] + offset[axis] - high[axis], low[axis] - to[axis] - offset[axis]);
+    Some((0..3).map(gap).fold(f64::NEG_INFINITY, f64::max))
+}

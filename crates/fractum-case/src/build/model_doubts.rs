@@ -1,0 +1,287 @@
+//! Is this the model that was meant? Doubts about what mesh and case make together.
+
+use fractum_fem::Plane;
+use fractum_math::Vec3;
+use fractum_mesh::{Group, Mesh};
+use fractum_output::number::{grouped, percent, quantity};
+use fractum_output::warning::Code;
+
+use super::body_doubts::{Own, thin, unheld};
+use super::load_doubts::{doubts_of_loads, odd_reactions};
+use super::meeting_doubts::{coincident, meetings, missing, overlapping, undamped};
+use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, SolverKind};
+use crate::{Diagnostic, Spanned, TimeFunction};
+
+/// Poisson's ratio above which linear elements are too stiff.
+const LOCKING: f64 = 0.45;
+/// Stress of the wave of a jump over the strength, above which the jump shows in what breaks.
+const JUMP: f64 = 0.1;
+/// Cosine between normals of facets that lie in one plane.
+const FLAT: f64 = 0.999;
+/// Instants at which a motion is looked at, and the share of its range that it may change by between two of them.
+const LOOKS: u32 = 2000;
+const LEAP: f64 = 0.2;
+
+/// Doubts about what case and mesh make together, coordinates in metres.
+pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
+    let own = |group: &Group| !group.triangles.is_empty() && group.tetrahedra.is_empty();
+    let bodies: Vec<Own> = case
+        .bodies
+        .iter()
+        .filter_map(|body| {
+            let BodyKind::Solid(solid) = &body.kind else { return None };
+            let (nodes, groups) = (mesh.group_nodes(&solid.group.value), mesh.group(&solid.group.value));
+            let plane = mesh.whole.is_none() && groups.iter().all(|group| own(group));
+            Some(Own { name: &body.name, solid, nodes, plane })
+        })
+        .collect();
+    let mut doubts: Vec<Diagnostic> = left_out(case, mesh, &bodies).into_iter().collect();
+    doubts.extend(beyond_bodies(case, mesh, &bodies));
+    // What lies within another body is told, and not also that it touches.
+    let mut meets = overlapping(mesh, &bodies);
+    if meets.is_empty() {
+        meets = coincident(case, mesh, &bodies);
+    }
+    if meets.is_empty() {
+        doubts.extend(meetings(case, &bodies));
+    }
+    doubts.extend(meets);
+    doubts.extend(missing(case, mesh, &bodies));
+    doubts.extend(undamped(case, &bodies));
+    doubts.extend(unheld(case, mesh, &bodies));
+    doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
+    doubts.extend(unequal_plates(mesh, &bodies));
+    doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
+    doubts.extend(bodies.iter().filter_map(|body| thickness(case, body)));
+    doubts.extend(odd_reactions(case, mesh, &bodies));
+    let mut begin = 0.0;
+    for stage in std::iter::once(case).chain(&case.later) {
+        doubts.extend(suctions(stage, mesh));
+        doubts.extend(leaps(stage, mesh, &bodies));
+        doubts.extend(doubts_of_loads(stage, begin, mesh, &bodies));
+        begin = stage.solver.end;
+    }
+    doubts
+}
+
+/// Elements that no body takes.
+fn left_out(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let source = case.mesh.as_ref()?;
+    if bodies.is_empty() || mesh.whole.is_some() {
+        return None;
+    }
+    let is_plane = bodies.iter().all(|body| body.plane);
+    let (count, what) = match is_plane {
+        true => (mesh.triangles.len(), "triangles"),
+        false => (mesh.tetrahedra.len(), "tetrahedra"),
+    };
+    let mut taken = vec![false; count];
+    let used = case.groups_used();
+    let whole = used.iter().filter(|(_, of)| matches!(of, GroupUse::Body | GroupUse::Filled | GroupUse::Tool));
+    for group in whole.flat_map(|(group, _)| mesh.group(&group.value)) {
+        let elements = if is_plane { &group.triangles } else { &group.tetrahedra };
+        elements.iter().for_each(|&element| taken[element as usize] = true);
+    }
+    let left = taken.iter().filter(|taken| !**taken).count();
+    if left == 0 {
+        return None;
+    }
+    let [left, count] = [left, count].map(|count| grouped(&count.to_string()));
+    let found = format!("= \"{}\": {left} of its {count} {what} are in no body", source.file.value.display());
+    let note = Diagnostic::warning(Code::LeftOut, &source.file.place, found);
+    Some(note.remedy("add a body for their group, or leave them out of the mesh"))
+}
+
+/// Groups of supports and loads whose nodes are in no body.
+fn beyond_bodies(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    // Particles may fill what a group names.
+    if bodies.is_empty() || case.bodies.iter().any(|body| !matches!(body.kind, BodyKind::Solid(_))) {
+        return Vec::new();
+    }
+    let mut inside = vec![false; mesh.nodes.len()];
+    bodies.iter().flat_map(|body| &body.nodes).for_each(|&node| inside[node as usize] = true);
+    let acts = |of: &GroupUse| matches!(of, GroupUse::Support | GroupUse::Force | GroupUse::Facets);
+    let doubt = |group: &Spanned<String>| {
+        let nodes = mesh.group_nodes(&group.value);
+        let beyond = nodes.iter().filter(|&&node| !inside[node as usize]).count();
+        if beyond == 0 {
+            return None;
+        }
+        let found = format!("= \"{}\": {beyond} of its {} nodes are in no body", group.value, nodes.len());
+        let note = Diagnostic::warning(Code::BeyondBodies, &group.place, found);
+        Some(note.remedy("what acts there is lost or falls on the others: add the body, or take a smaller group"))
+    };
+    case.groups_used().iter().filter(|(_, of)| acts(of)).filter_map(|(group, _)| doubt(group)).collect()
+}
+
+/// Plane bodies with common nodes and two thicknesses or plane states.
+fn unequal_plates(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    let plates: Vec<&Own> = bodies.iter().filter(|body| body.plane).collect();
+    let thickness = |body: &Own| body.solid.depth;
+    let state = |body: &Own| if in_plane_stress(body) { "stress" } else { "strain" };
+    let mut doubts = Vec::new();
+    for (index, second) in plates.iter().enumerate() {
+        let other = |first: &&&Own| thickness(first) != thickness(second) || state(first) != state(second);
+        let mut marked =
+            vec![false; if plates[..index].iter().any(|first| other(&first)) { mesh.nodes.len() } else { 0 }];
+        if marked.is_empty() {
+            continue;
+        }
+        second.nodes.iter().for_each(|&node| marked[node as usize] = true);
+        let touches = |first: &&&Own| first.nodes.iter().any(|&node| marked[node as usize]);
+        if let Some(first) = plates[..index].iter().find(|first| other(first) && touches(first)) {
+            let found = format!(
+                "= \"{}\" has a thickness of {} in plane {}, and \"{}\", with which it has nodes in common, {} in plane {}",
+                second.name.value,
+                quantity(thickness(second), "m"),
+                state(second),
+                first.name.value,
+                quantity(thickness(first), "m"),
+                state(first)
+            );
+            let note = Diagnostic::warning(Code::UnequalPlates, &second.name.place, found);
+            doubts
+                .push(note.remedy("give both bodies the same thickness and plane state, unless the plate has a step"));
+        }
+    }
+    doubts
+}
+
+/// Whether a plane body is free across its plane.
+fn in_plane_stress(body: &Own) -> bool {
+    body.plane && body.solid.plane.as_ref().is_some_and(|own| own.value == Plane::Stress)
+}
+
+/// A plane body without a thickness in a case of forces: it is one metre thick.
+fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
+    let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
+    let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction(_) | ProbeKind::ContactForce(_));
+    let forces = case.loads.iter().any(force) || case.probes.iter().any(in_newton);
+    if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || !forces {
+        return None;
+    }
+    let found = format!(
+        "= \"{}\" has no thickness: forces are those of a plate of {}",
+        body.name.value,
+        quantity(body.solid.depth, "m")
+    );
+    let note = Diagnostic::warning(Code::Thickness, &body.name.place, found);
+    Some(note.remedy("set thickness; \"1 m\" says that forces per metre are meant"))
+}
+
+/// A material so incompressible that elements of constant strain are too stiff.
+fn locking(case: &Case, body: &Own) -> Option<Diagnostic> {
+    let material = &case.materials[body.solid.material];
+    if material.poisson_ratio <= LOCKING || in_plane_stress(body) {
+        return None;
+    }
+    let found = format!("has a Poisson's ratio of {}", material.poisson_ratio);
+    let note = Diagnostic::warning(Code::Locking, &material.name.place, found).expected(format!("at most {LOCKING}"));
+    Some(note.remedy("elements of constant strain lock: displacements are too small; take 0.45, or many more elements"))
+}
+
+/// Pressures that pull, on anything but a plane face: there a negative pressure is a way to write a tension.
+fn suctions(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
+    let end = case.solver.end;
+    let doubt = |kind: &LoadKind| {
+        let LoadKind::Pressure { pressure, on, .. } = kind else { return None };
+        if pressure.value.depends_on_position() || on.group.as_ref().is_some_and(|group| is_flat(mesh, &group.value)) {
+            return None;
+        }
+        let at = |look: u32| pressure.value.value(end * f64::from(look) / f64::from(LOOKS), Vec3::zeros());
+        let [low, high] = (0..=LOOKS).map(at).fold([0.0f64; 2], |[low, high], p| [low.min(p), high.max(p)]);
+        if low >= 0.0 || -low < 1e-6 * high {
+            return None;
+        }
+        let found = format!("is {} during the run: it pulls", quantity(low, "Pa"));
+        let note =
+            Diagnostic::warning(Code::Suction, &pressure.place, found).expected("a positive pressure, which pushes");
+        Some(note.remedy("change its sign, or write a traction if it is to pull"))
+    };
+    case.loads.iter().filter_map(|load| doubt(&load.kind)).collect()
+}
+
+/// Whether all facets of a group have one normal.
+fn is_flat(mesh: &Mesh, group: &str) -> bool {
+    let at = |node: u32| mesh.nodes[node as usize];
+    let groups = mesh.group(group);
+    let triangles = groups.iter().flat_map(|group| &group.triangles).map(|&facet| mesh.triangles[facet as usize]);
+    let of_triangles = triangles.map(|[a, b, c]| (at(b) - at(a)).cross(&(at(c) - at(a))));
+    let lines = groups.iter().flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize]);
+    let of_lines = lines.map(|[a, b]| at(b) - at(a));
+    let mut normals = of_triangles.chain(of_lines).map(|normal| normal.normalize());
+    let Some(first) = normals.next() else { return false };
+    normals.all(|normal| normal.dot(&first).abs() > FLAT)
+}
+
+/// Motions that leap: displacements at any time, and velocities that begin at once where the wave of it comes near the strength.
+fn leaps(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    if case.solver.kind != SolverKind::Explicit {
+        return Vec::new();
+    }
+    let mut doubts = Vec::new();
+    for support in &case.supports {
+        for (axis, motion) in support.motion.iter().enumerate() {
+            let Some(motion) = motion else { continue };
+            match &motion.value {
+                Motion::Displacement(function) => doubts.extend(leap(case.solver.end, motion, function)),
+                Motion::Velocity(function) if !function.depends_on_position() => {
+                    let nodes = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value));
+                    let strikes = |body: &&Own| {
+                        let meets = |node: &u32| body.nodes.binary_search(node).is_ok();
+                        let rests = body.solid.initial_velocity[axis].is_none();
+                        rests && nodes.as_ref().is_some_and(|nodes| nodes.iter().any(meets))
+                    };
+                    let speed = function.value(0.0, Vec3::zeros()).abs();
+                    let struck = bodies.iter().filter(strikes);
+                    doubts.extend(struck.filter_map(|body| strike(case, motion, body, speed)).next());
+                }
+                _ => {}
+            }
+        }
+    }
+    doubts
+}
+
+/// A displacement that leaps.
+fn leap(end: f64, motion: &Spanned<Motion>, function: &TimeFunction) -> Option<Diagnostic> {
+    if function.depends_on_position() {
+        return None;
+    }
+    let at = |look: u32| end * f64::from(look) / f64::from(LOOKS);
+    let values: Vec<f64> = (0..=LOOKS).map(|look| function.value(at(look), Vec3::zeros())).collect();
+    let range = values.iter().fold(0.0f64, |range, value| range.max(value.abs()));
+    let look = values.windows(2).position(|pair| (pair[1] - pair[0]).abs() > LEAP * range)?;
+    // A steep ramp changes little within a part of the interval, a leap does not.
+    let (mut low, mut high) = (at(look as u32), at(look as u32 + 1));
+    for _ in 0..20 {
+        let middle = 0.5 * (low + high);
+        let [a, b, c] = [low, middle, high].map(|time| function.value(time, Vec3::zeros()));
+        if (b - a).abs() >= (c - b).abs() { high = middle } else { low = middle }
+    }
+    let way = function.value(high, Vec3::zeros()) - function.value(low, Vec3::zeros());
+    if way.abs() <= LEAP * range {
+        return None;
+    }
+    let found = format!("leaps by {} at t = {}", quantity(way, "m"), quantity(high, "s"));
+    let note = Diagnostic::warning(Code::Jump, &motion.place, found);
+    Some(note.remedy("let it change by a ramp of some periods of the body: a leap is a blow"))
+}
+
+/// A velocity that begins at once.
+fn strike(case: &Case, motion: &Spanned<Motion>, body: &Own, speed: f64) -> Option<Diagnostic> {
+    let material = &case.materials[body.solid.material];
+    let damage = material.damage.as_ref().filter(|_| body.solid.damage)?;
+    let stress = speed * (material.density * material.young_modulus).sqrt();
+    let share = stress / damage.value.law.tensile_strength;
+    if share <= JUMP {
+        return None;
+    }
+    let found = format!(
+        "begins at {} at once: the wave of it has {} of the tensile strength",
+        quantity(speed, "m/s"),
+        percent(share)
+    );
+    let note = Diagnostic::warning(Code::Jump, &motion.place, found);
+    Some(note.remedy("let it begin at zero, by a ramp, unless the body is struck"))
+}

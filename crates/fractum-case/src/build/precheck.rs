@@ -1,0 +1,284 @@
+//! What needs no particles is checked before they are made: packing a body may take minutes.
+
+use std::collections::HashMap;
+
+use fractum_math::Vec3;
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
+use fractum_scene::{Domain, Scene};
+
+use super::Context;
+use crate::measure::ContactForce;
+use crate::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
+use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
+
+/// Steps that a run can count without losing time to rounding.
+const MOST_STEPS: f64 = 1e15;
+
+/// Checks what case and mesh tell by themselves.
+pub(super) fn check_before_particles(context: &mut Context<'_>) {
+    check_groups(context);
+    check_quadrilaterals(context);
+    check_particle_sets(context);
+    check_time_functions(context);
+    check_bonded_statics(context);
+    check_contact_probes(context);
+    check_heat_probes(context);
+    context.check_subcycling();
+}
+
+/// Probes of heat need heat.
+fn check_heat_probes(context: &mut Context<'_>) {
+    let case = context.case;
+    let of_heat = |kind: &ProbeKind| matches!(kind, ProbeKind::Temperature(_) | ProbeKind::HeatOfAll(_));
+    for probe in case.probes.iter().filter(|probe| of_heat(&probe.kind) && case.flows.heat.is_none()) {
+        let found = format!("= \"{}\": the case has no heat", probe.name.value);
+        context.error(&probe.name.place, found, "a table [heat]");
+    }
+}
+
+/// Probes of contact name two bodies of which one at least is not rigid.
+fn check_contact_probes(context: &mut Context<'_>) {
+    let case = context.case;
+    let names: Vec<&str> = case.bodies.iter().map(|body| body.name.value.as_str()).collect();
+    for probe in &case.probes {
+        let ProbeKind::ContactForce(ContactForce { on, from, .. }) = &probe.kind else { continue };
+        let unknown = [on, from].map(|name| !names.contains(&name.value.as_str()));
+        for (name, _) in [on, from].into_iter().zip(unknown).filter(|(_, unknown)| *unknown) {
+            let mut diagnostic = Diagnostic::error(&name.place, format!("= \"{}\"", name.value));
+            diagnostic = diagnostic.expected(format!("the name of a body: {}", names.join(", ")));
+            if let Some(near) = nearest(&name.value, names.iter().copied()) {
+                diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+            }
+            context.diagnostics.push(diagnostic);
+        }
+        if unknown == [false; 2] && on.value == from.value {
+            context.error(&from.place, format!("= \"{}\", as `on`", from.value), "another body");
+        } else if case.tool(&on.value).is_some() && case.tool(&from.value).is_some() {
+            let found = format!("= \"{}\": rigid bodies do not touch each other", from.value);
+            context.error(&from.place, found, "a solid or a body of particles as one of both");
+        }
+    }
+}
+
+/// Every group that the case names must be in the mesh, with elements.
+fn check_groups(context: &mut Context<'_>) {
+    let names = context.mesh.group_names();
+    let mut empty: HashMap<&str, bool> = HashMap::new();
+    for (group, _) in context.case.groups_used() {
+        if group.value == WHOLE_MESH && has_several_bodies(context) {
+            let list = names.iter().filter(|name| **name != WHOLE_MESH).copied().collect::<Vec<_>>().join(", ");
+            context.error(&group.place, "is missing", format!("one of the physical groups of the mesh: {list}"));
+            continue;
+        }
+        if names.contains(&group.value.as_str()) {
+            let nodes = || context.mesh.group_nodes(&group.value);
+            if *empty.entry(&group.value).or_insert_with(|| nodes().is_empty()) {
+                context.error(&group.place, format!("= \"{}\"", group.value), "the group has no elements in the mesh");
+            }
+            continue;
+        }
+        let list = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
+        let mut diagnostic =
+            Diagnostic::error(&group.place, format!("= \"{}\"", group.value)).expected(match &context.case.mesh {
+                Some(mesh) => format!("a physical group of {}; groups there: {list}", mesh.file.value.display()),
+                None => "a set of particles of a bonded body, BODY or BODY.SET; the case has no mesh".to_owned(),
+            });
+        if let Some(near) = nearest(&group.value, names.iter().copied()) {
+            diagnostic = diagnostic.remedy(format!("did you mean \"{near}\"?"));
+        } else if names.is_empty() && context.case.mesh.is_some() {
+            diagnostic = diagnostic.remedy(
+                "leave group out for a body that is the whole mesh, and choose places by where; or save physical groups",
+            );
+        }
+        context.diagnostics.push(diagnostic);
+    }
+}
+
+/// Whether the mesh names several groups that a body may be made of.
+fn has_several_bodies(context: &Context<'_>) -> bool {
+    let solid = context.mesh.tetrahedron_count() > 0;
+    let dimension = if solid { 3 } else { 2 };
+    let groups = context.mesh.groups.iter();
+    groups.filter(|group| group.dimension == dimension && group.name != WHOLE_MESH).count() > 1
+}
+
+/// Plane bodies are of triangles alone.
+fn check_quadrilaterals(context: &mut Context<'_>) {
+    for body in &context.case.bodies {
+        let BodyKind::Solid(solid) = &body.kind else { continue };
+        let groups = context.mesh.group(&solid.group.value);
+        let [quads, triangles, tetrahedra] = groups.iter().fold([0; 3], |[quads, triangles, tetrahedra], group| {
+            [quads + group.quads.len(), triangles + group.triangles.len(), tetrahedra + group.tetrahedra.len()]
+        });
+        if quads > 0 && tetrahedra == 0 && context.mesh.whole.is_none() {
+            let all = quads + triangles;
+            let found = format!("= \"{}\": {quads} of its {all} elements are quadrilaterals", solid.group.value);
+            let error = Diagnostic::error(&solid.group.place, found).expected("triangles");
+            context.diagnostics.push(error.remedy("mesh it without recombination (Mesh.RecombineAll = 0 in Gmsh)"));
+        }
+    }
+}
+
+/// Sets of particles must be walls of their bodies or named there; a packing made before tells its walls only when
+/// it is read.
+fn check_particle_sets(context: &mut Context<'_>) {
+    let case = context.case;
+    let mut named: Vec<&Selection> = case.supports.iter().map(|support| &support.on).collect();
+    for load in &case.loads {
+        match load.kind.on() {
+            Some((on, GroupUse::Facets)) if context.names_particles(on) => {
+                let Some(group) = &on.group else { continue };
+                let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
+                let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
+                context.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
+            }
+            Some((on, _)) => named.push(on),
+            None => {}
+        }
+    }
+    named.extend(case.probes.iter().filter_map(|probe| probe.kind.may_be_particles()));
+    named.extend(case.output.gauges.iter().map(|gauges| &gauges.on));
+    named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
+    let groups = named.into_iter().filter_map(|on| on.group.as_ref());
+    let groups = groups.chain(case.ties.iter().map(|tie| &tie.bonded));
+    for group in groups {
+        let Some((body, Some(set))) = case.particle_group(&group.value) else { continue };
+        let (walls, groups) = match &case.bodies[body].kind {
+            BodyKind::Bonded(own) => (own.wall_names(), &own.groups),
+            BodyKind::Particles(own) => (Some(&[][..]), &own.groups),
+            _ => continue,
+        };
+        let Some(walls) = walls else { continue };
+        let known: Vec<&str> =
+            walls.iter().copied().chain(groups.iter().map(|(name, _)| name.value.as_str())).collect();
+        if !known.contains(&set) {
+            unknown_set(context, group, &case.bodies[body].name.value, set, &known);
+        }
+    }
+}
+
+/// Notes a set that a body of particles does not have.
+pub(super) fn unknown_set(context: &mut Context<'_>, group: &Spanned<String>, body: &str, set: &str, known: &[&str]) {
+    let list: Vec<String> = known.iter().map(|set| format!("{body}.{set}")).collect();
+    let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
+        .expected(format!("a set of particles of \"{body}\": {body}, {}", list.join(", ")));
+    if let Some(near) = nearest(set, known.iter().copied()) {
+        diagnostic = diagnostic.remedy(format!("did you mean \"{body}.{near}\"?"));
+    }
+    context.diagnostics.push(diagnostic);
+}
+
+/// Loads and motions must be finite numbers during the whole run, on the nodes that they act on.
+fn check_time_functions(context: &mut Context<'_>) {
+    let case = context.case;
+    let mut functions: Vec<(&Spanned<TimeFunction>, Option<&Selection>)> = Vec::new();
+    for load in &case.loads {
+        let on = load.kind.on().map(|(on, _)| on);
+        functions.extend(load.kind.functions().into_iter().map(|function| (function, on)));
+        // What acts on everything acts everywhere alike.
+        for function in load.kind.functions().iter().filter(|f| on.is_none() && f.value.depends_on_position()) {
+            context.error(&function.place, "depends on the position", "a function of time only");
+        }
+    }
+    for body in &case.bodies {
+        if let BodyKind::Rigid(rigid) = &body.kind {
+            let all = rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force);
+            functions.extend(all.flatten().map(|f| (f, None)));
+        }
+    }
+    for condition in case.flows.heat.iter().flat_map(|heat| &heat.conditions) {
+        functions.push((condition.kind.function(), Some(&condition.on)));
+    }
+    for (function, on) in functions {
+        check_function(context, &function.value, function, on);
+    }
+    for support in &case.supports {
+        for motion in support.motion.iter().flatten() {
+            if let Motion::Velocity(function) | Motion::Displacement(function) = &motion.value {
+                check_function(context, function, motion, Some(&support.on));
+            }
+        }
+    }
+}
+
+fn check_function<T>(context: &mut Context<'_>, function: &TimeFunction, written: &Spanned<T>, on: Option<&Selection>) {
+    let mut positions: Vec<Vec3> = Vec::new();
+    if let Some(on) = on.filter(|_| function.depends_on_position()) {
+        let all = || (0..context.mesh.nodes.len() as u32).collect();
+        let nodes = on.group.as_ref().map_or_else(all, |group| context.mesh.group_nodes(&group.value));
+        positions.extend(nodes.into_iter().map(|n| context.mesh.nodes[n as usize]));
+        positions.retain(|x| on.within.as_ref().is_none_or(|within| within.value.holds_at(*x)));
+    }
+    let Some((time, x, value)) = function.not_finite(context.case.solver.end, &positions) else { return };
+    let at = if function.depends_on_position() {
+        format!(", ({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z)
+    } else {
+        String::new()
+    };
+    let found = format!("is {value} at t = {}{at}", quantity(time, "s"));
+    context.error(&written.place, found, "a finite number during the whole run");
+}
+
+/// What a bonded body at rest cannot have.
+fn check_bonded_statics(context: &mut Context<'_>) {
+    let solver = &context.case.solver;
+    let Some(options) = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static) else { return };
+    let [Body { kind: BodyKind::Bonded(body), .. }] = context.case.bodies.as_slice() else { return };
+    let place = solver.place.clone();
+    let found = |what: &str| format!("= \"static\" with a bonded body and {what}");
+    if options.control.is_some() || solver.step.is_some() {
+        let expected = "no control and no step: the load goes straight from break to break";
+        context.error(&place, found("solver.control or solver.step"), expected);
+    }
+    if !context.case.loads.is_empty() {
+        let expected = "supports only, which move in proportion to time; or kind = \"explicit\"";
+        context.error(&place, found("[[loads]]"), expected);
+    }
+    if body.initial_velocity.iter().any(Option::is_some) {
+        context.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");
+    }
+    if body.law != BondLawKind::CohesiveBeam {
+        let what = format!("bond = \"{}\"", body.law.name());
+        context.error(&place, found(&what), "bond = \"cohesive-beam\" on the body; or kind = \"explicit\"");
+    }
+}
+
+/// The time step of a scene in motion must be stable, and reach the end of the run.
+pub(super) fn check_time_step(context: &mut Context<'_>, scene: &Scene, warnings: &mut Vec<Diagnostic>) {
+    let (solver, stable, dt) = (&context.case.solver, scene.stable_dt(), scene.clock.dt_after);
+    if !stable.is_normal() {
+        let place = context.case.bodies[0].name.place.clone();
+        let found = format!("= \"{}\": the stable time step is {stable} s", context.case.bodies[0].name.value);
+        return context.error(&place, found, "materials, sizes and masses of a real body");
+    }
+    if let Some(step) = solver.step.as_ref().filter(|step| step.value > stable) {
+        let stable = quantity(stable, "s");
+        let found = format!("= {} is above the stable step {stable}", quantity(step.value, "s"));
+        let remedy = "lower it, or leave it out: solver.safety times the stable step is taken then";
+        if step.value > 2.0 * scene.stable_dt() {
+            context.diagnostics.push(Diagnostic::error(&step.place, found).remedy(remedy));
+            return;
+        }
+        warnings.push(Diagnostic::warning(Code::TimeStep, &step.place, found).remedy(remedy));
+    }
+    let steps = solver.end / dt;
+    if steps.is_nan() || steps > MOST_STEPS {
+        let found = format!("= {} needs {steps:.1e} steps of {}", quantity(solver.end, "s"), quantity(dt, "s"));
+        context.error(&solver.end_place.clone(), found, format!("an end within {MOST_STEPS:e} steps"));
+    }
+}
+
+/// The scene with the domain of its run, which must hold all of its nodes and particles at the start.
+pub(super) fn with_domain(context: &mut Context<'_>, scene: Scene, domain: &Spanned<Domain>) -> Option<Scene> {
+    let planar = scene.solid.is_plane();
+    let nodes = scene.solid.reference.iter().map(|p| (p, "node"));
+    let points = nodes.chain(scene.bonded.reference().iter().map(|p| (p, "particle")));
+    if let Some((p, what)) = points.clone().find(|(p, _)| domain.value.is_outside(p, planar)) {
+        let place = format!("({}, {}, {})", quantity(p.x, "m"), quantity(p.y, "m"), quantity(p.z, "m"));
+        let found = format!("leaves a {what} at {place} outside at the start");
+        context.error(&domain.place, found, "a box around all bodies but rigid ones, with room for pieces to fly");
+        return None;
+    }
+    Some(scene.with_domain(domain.value))
+}

@@ -1,0 +1,134 @@
+//! What a quasi-static run needs, and what it cannot do.
+
+use fractum_fem::{LocalDamping, NotSecant, Solid};
+use fractum_scene::statics::{self, StaticSettings};
+use fractum_scene::{Bonded, BondedStaticSettings, Scene};
+
+use super::Context;
+use super::bodies::Numbering;
+use crate::Place;
+use crate::model::{Body, BodyKind, Control, Damping, RigidShape, SolverKind};
+
+/// Relative residual of iterative linear solutions.
+const LINEAR_TOLERANCE: f64 = 1e-8;
+/// Steps of the load parameter where something may break.
+const STEPS: f64 = 50.0;
+
+/// Settings of the static solver; none for other solvers, or with errors noted.
+pub(super) fn statics(context: &mut Context<'_>, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
+    let solver = &context.case.solver;
+    solver.statics.as_ref()?;
+    let place = place_of_solver(context);
+    if solver.kind == SolverKind::Auto {
+        // What is not for equilibrium is for motion; whether the supports hold is seen on the whole scene.
+        let possible = solid.not_secant().is_none() && context.case.bodies.iter().all(may_rest);
+        return possible.then(|| static_settings(context, solid, numbering)).flatten();
+    }
+    if let Some((body, why)) = solid.not_secant() {
+        let found = match why {
+            NotSecant::Corotational => "kinematics = \"corotational\"",
+            NotSecant::Unilateral => "damage.unilateral = true",
+            NotSecant::Rate => "damage.rate_time",
+        };
+        let found = format!("= \"static\" with {found} in body \"{}\"", solid.body(body).name);
+        context.error(&place, found, "small strains, open cracks and damage without delay; or kind = \"explicit\"");
+    }
+    if matches!(context.case.bodies.as_slice(), [Body { kind: BodyKind::Bonded(_), .. }]) {
+        return None;
+    }
+    if let Some(body) = context.case.bodies.iter().find(|body| !may_rest(body)) {
+        let found = format!("= \"static\" with body \"{}\"", body.name.value);
+        let expected = if has_walls(body) {
+            "rigid planes, boxes, cylinders and spheres, which solids touch from outside: facets and containers touch in motion alone"
+        } else {
+            "solid bodies with rigid ones that are driven by velocity or stand still, or one bonded body"
+        };
+        context.error(&place, found, format!("{expected}; or kind = \"explicit\""));
+        return None;
+    }
+    static_settings(context, solid, numbering)
+}
+
+/// Whether what the static solver gets is held; an error where the case asks for that solver.
+pub(super) fn is_held(context: &mut Context<'_>, scene: &Scene) -> bool {
+    let Err(error) = scene.check_supports() else { return true };
+    if context.case.solver.kind == SolverKind::Static {
+        let place = place_of_solver(context);
+        let remedy = if scene.supports().count() == 0 { "at least one [[supports]]" } else { "" };
+        context.error(&place, format!("= \"static\": {error}"), remedy);
+    }
+    false
+}
+
+fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
+    let solver = &context.case.solver;
+    let options = solver.statics.as_ref()?;
+    let Damping { local, mass, stiffness, bulk_linear, bulk_quadratic, .. } = context.case.damping;
+    let given = [local, mass, stiffness, bulk_linear, bulk_quadratic].iter().any(|&value| value > 0.0);
+    let damage = solid.has_damage();
+    let whole = if damage { solver.end / STEPS } else { solver.end };
+    let opening = options.opening.as_ref().map(|opening| statics::Opening {
+        nodes: context.group_nodes(&opening.group, numbering),
+        against: context.group_nodes(&opening.against, numbering),
+        direction: opening.along,
+        step: opening.step,
+        end: opening.end,
+    });
+    Some(StaticSettings {
+        control: match options.control {
+            _ if opening.is_some() => opening.map(statics::Control::Opening)?,
+            Some(Control::Time) => statics::Control::Time,
+            Some(Control::Path | Control::Opening) => statics::Control::Path,
+            None if damage => statics::Control::Path,
+            None => statics::Control::Time,
+        },
+        step: solver.step.as_ref().map_or(whole, |step| step.value.min(solver.end)),
+        end: solver.end,
+        most_steps: options.most_steps,
+        tolerance: options.tolerance,
+        linear_tolerance: LINEAR_TOLERANCE,
+        linear: options.linear_solver,
+        damping: given.then_some(LocalDamping { local, mass_rate: mass }),
+        no_equilibrium: options.no_equilibrium,
+    })
+}
+
+/// Settings of the solver that brings a bonded body from break to break; none for other bodies and solvers, or with
+/// errors noted.
+pub(super) fn bonded_statics(context: &mut Context<'_>, bonded: &Bonded) -> Option<BondedStaticSettings> {
+    let solver = &context.case.solver;
+    let options = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static)?;
+    let [Body { kind: BodyKind::Bonded(_), .. }] = context.case.bodies.as_slice() else { return None };
+    let place = place_of_solver(context);
+    if bonded.held_count() == 0 {
+        context.error(&place, "= \"static\" with a bonded body and no support", "at least one [[supports]]");
+    }
+    if let Err(error) = bonded.check_proportional(solver.end) {
+        context.error(&place, format!("= \"static\": {error}"), "");
+    }
+    Some(BondedStaticSettings {
+        end: solver.end,
+        tolerance: options.tolerance,
+        batch: options.batch,
+        most_steps: options.most_steps,
+    })
+}
+
+fn place_of_solver(context: &Context<'_>) -> Place {
+    context.case.solver.place.clone()
+}
+
+/// Whether a body has a place in equilibrium: solids, and rigid shapes that contact does not move.
+pub fn may_rest(body: &Body) -> bool {
+    match &body.kind {
+        BodyKind::Solid(_) => true,
+        BodyKind::Rigid(rigid) => rigid.mass.is_none() && rigid.spin.iter().all(Option::is_none) && !has_walls(body),
+        BodyKind::Bonded(_) | BodyKind::Particles(_) => false,
+    }
+}
+
+/// Whether a body is rigid facets or a container.
+fn has_walls(body: &Body) -> bool {
+    let BodyKind::Rigid(rigid) = &body.kind else { return false };
+    rigid.inside || matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. })
+}

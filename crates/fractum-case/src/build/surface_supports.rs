@@ -1,0 +1,115 @@
+//! Absorbing and elastic supports on facets of the solids.
+
+use std::collections::HashMap;
+
+use fractum_fem::{ElementKind, Solid};
+use fractum_math::connected;
+use fractum_scene::{SupportedFacet, SurfaceSupports};
+
+use super::Context;
+use super::bodies::{Numbering, Part};
+use super::conditions::{Surface, sorted};
+use crate::model::{self, SolverKind, SurfaceSupport};
+
+impl Context<'_> {
+    /// Supports on facets, and all facets that they are on.
+    pub(super) fn surface_supports(
+        &mut self,
+        parts: &[Part],
+        numbering: &Numbering,
+        surface: &Surface,
+        solid: &Solid,
+        boundary_of_parts: &[Vec<[u32; 3]>],
+    ) -> (SurfaceSupports, Vec<[u32; 3]>) {
+        let case = self.case;
+        let (mut absorbing, mut elastic, mut all) = (Vec::new(), Vec::new(), Vec::new());
+        if case.supports.iter().all(|support| support.surface.is_none()) {
+            return (SurfaceSupports::default(), all);
+        }
+        let impedances = impedances(parts, solid, surface, boundary_of_parts);
+        let outer = is_outer(surface, numbering.positions.len());
+        for support in &case.supports {
+            let Some(kind) = &support.surface else { continue };
+            if self.names_particles(&support.on) {
+                self.error(&kind.place, ": particles have no facets", "facets on the surface of a solid body");
+                continue;
+            }
+            self.check_solver(&kind.value, &kind.place);
+            let facets = self.selected_facets(&support.on, numbering, surface);
+            if kind.value == SurfaceSupport::Absorbing {
+                self.check_outer(support, &facets, &outer);
+            }
+            for facet in &facets {
+                let vector = surface.area_vector(facet);
+                let (normal, area) = (vector.normalize(), vector.norm());
+                let (supports, along_and_across) = match kind.value {
+                    SurfaceSupport::Absorbing => (&mut absorbing, impedances[&sorted(*facet)]),
+                    SurfaceSupport::Elastic { normal, tangential } => (&mut elastic, [normal, tangential]),
+                };
+                supports.push(SupportedFacet { nodes: *facet, normal, area, along_and_across });
+            }
+            all.extend(facets);
+        }
+        all.sort_unstable();
+        all.dedup();
+        (SurfaceSupports::new(&absorbing, &elastic, &solid.mass), all)
+    }
+
+    /// Both answer to motion.
+    fn check_solver(&mut self, kind: &SurfaceSupport, place: &crate::Place) {
+        let at_rest = self.case.solver.kind != SolverKind::Explicit;
+        let only_stage = self.case.source.stage.is_empty();
+        if at_rest && (only_stage || matches!(kind, SurfaceSupport::Elastic { .. })) {
+            self.error(
+                place,
+                ": it acts in motion only",
+                "kind = \"explicit\", or stages = [...] without those at rest",
+            );
+        }
+    }
+
+    /// Waves leave through the outer boundary: a cavity is where they come from.
+    fn check_outer(&mut self, support: &model::Support, facets: &[[u32; 3]], outer: &[bool]) {
+        if facets.iter().any(|facet| !outer[facet[0] as usize]) {
+            let place = support.on.place().cloned().unwrap_or_else(|| self.whole_case());
+            let found = format!("= \"{}\" has facets of a cavity, an inner boundary", support.on.label());
+            self.error(&place, found, "facets on the outer boundary, through which waves leave");
+        }
+    }
+}
+
+/// ρ c_P and ρ c_S of the material behind every facet of the surface [Pa s/m].
+///
+/// - `boundary_of_parts`: facets of each body in space
+fn impedances(
+    parts: &[Part],
+    solid: &Solid,
+    surface: &Surface,
+    boundary_of_parts: &[Vec<[u32; 3]>],
+) -> HashMap<[u32; 3], [f64; 2]> {
+    let mut found = HashMap::new();
+    for (index, part) in parts.iter().enumerate() {
+        let body = solid.body(index);
+        let own = [solid.p_wave_speed(index), body.elastic.s_wave_speed()].map(|speed| body.elastic.density * speed);
+        let sides: Vec<[u32; 3]> = match part.shape {
+            ElementKind::T3 => {
+                body.elements.iter().flat_map(|&[a, b, c, _]| [[a, b, b], [b, c, c], [c, a, a]]).collect()
+            }
+            ElementKind::T4 => boundary_of_parts[index].clone(),
+        };
+        let outer = sides.into_iter().map(sorted).filter(|side| surface.outward(*side).is_some());
+        found.extend(outer.map(|side| (side, own)));
+    }
+    found
+}
+
+/// For every node, whether the closed part of the surface that it is on encloses material; false on cavities.
+fn is_outer(surface: &Surface, nodes: usize) -> Vec<bool> {
+    let links = surface.facets.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]);
+    let part = connected(nodes, links);
+    let mut volume = vec![0.0; nodes];
+    for facet in surface.facets {
+        volume[part[facet[0] as usize] as usize] += surface.area_vector(facet).dot(&surface.middle(facet));
+    }
+    part.into_iter().map(|part| volume[part as usize] > 0.0).collect()
+}

@@ -1,0 +1,185 @@
+//! Mesh, materials, bodies, ties.
+
+use fractum_dem::criterion::EndMoments;
+use fractum_dem::{FractureCriterion, InterfaceFailure};
+use fractum_fem::{CriterionKind, Formulation, Kinematics, Plane};
+use fractum_pack::{Arrangement, Convention};
+
+use super::{key, names};
+use crate::key_kind::{KeyDoc, KeyKind as K};
+use crate::model::BondLawKind;
+use crate::unit::Dimension as D;
+
+#[rustfmt::skip] // a table reads best with one row per line
+pub(super) static KEYS: &[KeyDoc] = &[
+    key("fractum", K::Integer, "required", "Version of the case format: 1"),
+    key("title", K::Text, "", "Title of reports"),
+    key("parameters", K::NamedTables, "", "Named quantities for use in any quantity or expression; `--set NAME=value` overrides them"),
+    key("parameters.NAME", K::AnyQuantity, "", "A quantity, or an expression of parameters above it"),
+    key("mesh", K::Table, "", "The mesh; required by bodies of mesh groups"),
+    key("mesh.file", K::Text, "required", "Gmsh (.msh), Abaqus (.inp) or VTK (.vtu) file, relative to the case file"),
+    key("mesh.parts", K::Integer, "", "Number of files of the mesh, one for each partition of Gmsh (`Mesh.PartitionSplitMeshFiles`): with file = \"rock.msh\" rock_1.msh, rock_2.msh and so on. Several processes read some files each. With parts = 1 one process reads the file itself and distributes it"),
+    key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
+    key("mesh.join", K::AllOrNames, "false", "Solids share nodes at the same positions: all solids, or the named ones. Nodes are joined on faces that conform, if they are nearer than a thousandth of the shortest edge"),
+    key("mesh.halvings", K::Integer, "0", "How often every edge is halved after reading, 0 to 6: each time a triangle becomes 4, a tetrahedron 8; curved sides stay those of the file"),
+    key("mesh.scramble", K::Table, "", "Moves inner nodes at random, which gives another mesh of the same size. It comes before halvings"),
+    key("mesh.scramble.share", K::Quantity(D::NONE), "required", "Largest move of a node over its shortest edge, above 0 and at most 0.5; nodes on sides, between groups and at poor elements stay"),
+    key("mesh.scramble.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
+    key("materials", K::NamedTables, "", "Materials by name"),
+    key("materials.NAME", K::Table, "", "A material"),
+    key("materials.NAME.density", K::Quantity(D::DENSITY), "required", "Mass density, > 0"),
+    key("materials.NAME.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus, > 0"),
+    key("materials.NAME.poisson_ratio", K::Quantity(D::NONE), "required", "Poisson's ratio, between -1 and 0.5, both excluded"),
+    key("materials.NAME.damage", K::Table, "", "Softening damage; without this table the material stays elastic"),
+    key("materials.NAME.damage.criterion", K::Choice(names::<CriterionKind>), "\"rankine\"", "Criterion that gives the equivalent stress, which drives damage"),
+    key("materials.NAME.damage.tension_cutoff", K::Flag, "true", "Mohr-Coulomb only: cut off by the largest principal stress; false loses about a fifth of the Brazilian strength"),
+    key("materials.NAME.damage.tensile_strength", K::Quantity(D::PRESSURE), "required", "Uniaxial tensile strength ft, > 0"),
+    key("materials.NAME.damage.fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area of a full crack Gf, > 0"),
+    key("materials.NAME.damage.compressive_strength", K::Quantity(D::PRESSURE), "10 ft", "Uniaxial compressive strength, above ft, with mohr-coulomb at least ft (1 + sin φ)/(1 - sin φ); for mohr-coulomb with cut-off, drucker-prager, modified-mohr-coulomb"),
+    key("materials.NAME.damage.friction_angle", K::Angle, "\"35 deg\"", "Angle of internal friction, from 0 to below 90 deg; for mohr-coulomb, modified-mohr-coulomb"),
+    key("materials.NAME.damage.softening", K::Choice(softenings), "\"exponential\"", "Stress against crack opening, by name or as a table"),
+    key("materials.NAME.damage.softening.kind", K::Choice(softenings), "required", "Stress against crack opening"),
+    key("materials.NAME.damage.softening.kink_stress", K::Quantity(D::NONE), "1/3", "Bilinear only: stress at the kink over ft, within 0 and 1 (Petersson 1981)"),
+    key("materials.NAME.damage.softening.kink_opening", K::Quantity(D::NONE), "2/9", "Bilinear only: opening at the kink over the last opening, within 0 and 1 (Petersson 1981)"),
+    key("materials.NAME.damage.residual", K::Quantity(D::NONE), "0.02", "Stress over strength at which an edge is broken, within 0 and 1"),
+    key("materials.NAME.damage.scatter", K::Table, "", "Random scatter of the tensile strength"),
+    key("materials.NAME.damage.scatter.distribution", K::Choice(distributions), "required", "weibull: flaws in the volume or on the free surface, the same on any mesh. weibull-per-edge, uniform-per-edge: every edge has a random factor of its own, so that finer meshes are weaker and scatter less"),
+    key("materials.NAME.damage.scatter.modulus", K::Quantity(D::NONE), "", "weibull and weibull-per-edge, required there: modulus, > 0"),
+    key("materials.NAME.damage.scatter.reference_volume", K::Quantity(D::VOLUME), "", "weibull, required there or reference_area: volume of the specimens of which 63 % are weaker than tensile_strength, > 0"),
+    key("materials.NAME.damage.scatter.reference_area", K::Quantity(D::AREA), "", "weibull: instead, their free surface, on which all flaws lie (glass), > 0"),
+    key("materials.NAME.damage.scatter.correlation_length", K::Quantity(D::LENGTH), "π E Gf/(2 f²) of a flaw of strength f", "weibull: diameter of the spot that a flaw weakens, the same for all flaws, > 0. A flaw weakens at least the element around it"),
+    key("materials.NAME.damage.scatter.width", K::Quantity(D::NONE), "", "uniform-per-edge only, required there: half width around 1, within 0 and 1"),
+    key("materials.NAME.damage.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
+    key("materials.NAME.damage.reduce_strength_to_fit", K::Flag, "false", "Lower ft where an element is too large for Gf, instead of refusing it"),
+    key("materials.NAME.damage.regularisation", K::Choice(regularisations), "\"none\"", "Damage as a cohesive phase field, whose cracks do not feel the mesh"),
+    key("materials.NAME.damage.length", K::Quantity(D::LENGTH), "twice the element size where cracks are expected", "With regularisation: length b of the phase field, > 0, at most 0.320 (exponential), 0.353 (bilinear, default kink) or 0.455 (linear) E Gf/ft²; a crack is a band about 3 b wide"),
+    key("materials.NAME.damage.unilateral", K::Flag, "by the scene", "Stiffness recovers where cracks close; default: true in smoothed bodies in motion under pressure pulses or gas whose criterion has a compressive strength, else false"),
+    key("materials.NAME.damage.rate_time", K::Quantity(D::TIME), "\"0 s\"", "Time constant of the damage-rate limiter, ≥ 0; 0 is off"),
+    key("materials.NAME.bonds", K::Table, "", "Beams of bonded bodies, as `fractum calibrate` writes them; without this table they are calibrated"),
+    key("materials.NAME.bonds.coordination", K::Quantity(D::NONE), "required", "Coordination that the beams hold for"),
+    key("materials.NAME.bonds.convention", K::Choice(names::<Convention>), "required", "Which particles the coordination counts"),
+    key("materials.NAME.bonds.radius_ratio", K::Quantity(D::NONE), "required", "Beam radius over mean particle radius, within 0 and 2"),
+    key("materials.NAME.bonds.young_modulus", K::Quantity(D::PRESSURE), "required", "Young's modulus of the beams, > 0"),
+    key("materials.NAME.interface", K::Table, "", "Interfaces of bonded bodies with bond = \"local\" or \"local-nonlocal\"; without this table they are elastic and hold"),
+    key("materials.NAME.interface.areas", K::Choice(areas), "\"cells\"", "Factor α on the area π min(r)² of an interface: by the number of neighbours, so that the cells of the particles fill the body; or 40 P/N for all, with porosity P and mean number of neighbours N"),
+    key("materials.NAME.interface.area_factor", K::Quantity(D::NONE), "", "Instead: α, > 0"),
+    key("materials.NAME.interface.tensile_strength", K::Quantity(D::PRESSURE), "unlimited", "Tensile strength of the interface, ≥ 0"),
+    key("materials.NAME.interface.shear_strength", K::Quantity(D::PRESSURE), "unlimited", "Shear strength without pressure, ≥ 0"),
+    key("materials.NAME.interface.internal_friction", K::Quantity(D::NONE), "0", "Coefficient by which pressure adds to the shear strength, ≥ 0"),
+    key("materials.NAME.interface.friction", K::Quantity(D::NONE), "0.5", "Coulomb's coefficient of an interface that has separated, ≥ 0"),
+    key("materials.NAME.interface.tension_softening", K::Quantity(D::NONE), "brittle", "Slope of softening in tension over that of elasticity, > 0; the energy per area is ft²d/2E (1 + 1/slope)"),
+    key("materials.NAME.interface.shear_softening", K::Quantity(D::NONE), "brittle", "The same in shear, > 0"),
+    key("materials.NAME.interface.failure", K::Choice(names::<InterfaceFailure>), "\"uncoupled\"", "Tension and shear damage an interface each for itself, or together"),
+    key("materials.NAME.interface.crushing_stress", K::Point(D::PRESSURE), "", "Three ascending compressive stresses at which the curve of compression bends; elastic without them"),
+    key("materials.NAME.interface.crushing_ratio", K::Point(D::NONE), "", "Young's modulus over the slope of the curve beyond each of them, ≥ 1"),
+    key("materials.NAME.interface.damping_ratio", K::Quantity(D::NONE), "0", "Local viscous damping of the normal motion over the critical one, 0 to 1"),
+    key("materials.NAME.fracture", K::Table, "", "When the bonds of bonded bodies break; without this table they hold"),
+    key("materials.NAME.fracture.criterion", K::Choice(bond_criteria), "\"principal\", with a compressive_strength \"mohr-coulomb\"", "Fracture criterion: which stress is compared with the strength, and which bonds break; see the list below"),
+    key("materials.NAME.fracture.tensile_strength", K::Quantity(D::PRESSURE), "required", "Tensile strength of the material, > 0; the criterion's own strengths are found by breaking three boxes in tension"),
+    key("materials.NAME.fracture.criterion_strength", K::Quantity(D::PRESSURE), "", "Instead: strength of the criterion itself in tension, > 0, as `fractum calibrate --strength` writes it"),
+    key("materials.NAME.fracture.compressive_strength", K::Quantity(D::PRESSURE), "none with principal, else 10 times that in tension", "In compression, above that in tension: with mohr-coulomb that of the material, for which three prisms are crushed in motion; with principal and drucker-prager that of the criterion, times the factor found in tension; with criterion_strength that of the criterion"),
+    key("materials.NAME.fracture.friction_angle", K::Angle, "\"35 deg\"", "mohr-coulomb only: angle of internal friction, from 0 to below 90 deg"),
+    key("materials.NAME.fracture.level", K::Integer, "1", "Over which particles stress is taken: 0 the particle, 1 those bonded to it too, 2 their partners too; not for beam and hydrostatic"),
+    key("materials.NAME.fracture.moments", K::Choice(names::<EndMoments>), "\"mean\"", "beam only: which bending moment counts"),
+    key("materials.NAME.fracture.scatter", K::Table, "", "Random scatter of the strength of particles by Weibull's flaws in the volume"),
+    key("materials.NAME.fracture.scatter.modulus", K::Quantity(D::NONE), "required", "Weibull modulus, > 0"),
+    key("materials.NAME.fracture.scatter.reference_volume", K::Quantity(D::VOLUME), "required", "Volume of the specimens of which 63 % are weaker than the strength given, > 0"),
+    key("materials.NAME.fracture.scatter.correlation_length", K::Quantity(D::LENGTH), "4 particle diameters (ft/f)² of a flaw of strength f", "Diameter of the spot that a flaw weakens, the same for all flaws, > 0. A flaw weakens at least the particle around it"),
+    key("materials.NAME.fracture.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
+    key("materials.NAME.contact", K::Table, "", "Contact of particles of this material, and of its discrete elements"),
+    key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
+    key("materials.NAME.contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius"),
+    key("materials.NAME.contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1"),
+    key("materials.NAME.contact.restitution", K::Quantity(D::NONE), "", "Coefficient of restitution, above 0 to 1, instead of the damping ratio"),
+    key("materials.NAME.contact.young_modulus", K::Quantity(D::PRESSURE), "", "Young's modulus of the spheres in contact, > 0, instead of that of the material. Rigid bodies then feel the particles of a bonded body as spheres, too; without it, as parts of a flat face"),
+    key("bodies[]", K::Tables, "required", "Bodies, at least one"),
+    key("bodies[].name", K::Text, "required", "Name, unique among bodies"),
+    key("bodies[].kind", K::Choice(body_kinds), "required", "Kind of the body"),
+    key("bodies[].group", K::Text, "", "Solid: mesh group of its elements, may be left out where the mesh has one body; bonded group: mesh group whose volume its particles fill; rigid group: its facets"),
+    key("bodies[].material", K::Text, "", "Name of its material; required except for rigid bodies. A rigid body with a material deforms in contact with particles, one without does not"),
+    key("bodies[].formulation", K::Choice(names::<Formulation>), "\"smoothed\" with damage, else \"standard\"", "Solid: strain and damage on edges, or the plain element"),
+    key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"auto\"", "Solid: small strains, a frame that turns with each element, or small until a part turns in motion"),
+    key("bodies[].plane", K::Choice(names::<Plane>), "\"strain\"", "Solid in 2D only: plane strain or plane stress"),
+    key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in 2D only: thickness, > 0"),
+    key("bodies[].initial_velocity", K::Table, "", "Velocity at the start, by components; of a rigid body along its free axes"),
+    key("bodies[].initial_velocity.x", K::Field(D::VELOCITY), "0", "Component along x"),
+    key("bodies[].initial_velocity.y", K::Field(D::VELOCITY), "0", "Component along y"),
+    key("bodies[].initial_velocity.z", K::Field(D::VELOCITY), "0", "Component along z"),
+    key("bodies[].damage", K::Flag, "true", "Solid: false keeps the body elastic whatever its material says"),
+    key("bodies[].damage_where", K::Condition, "", "Solid: condition on the edges that may be damaged; absent means all"),
+    key("bodies[].strength_factor", K::Field(D::NONE), "1", "Solid: factor on the tensile strength, > 0"),
+    key("bodies[].shape", K::Choice(shapes), "", "Rigid: the shape, required there. Bonded: the shape that particles fill, any but plane. Particles: box, cylinder or sphere, filled with a loose cloud"),
+    key("bodies[].point", K::Point(D::LENGTH), "[0, 0, 0]", "Plane: a point on it; box: its lower corner; cylinder: centre of the face where it begins; sphere: its centre; rigid group and stl: point about which it turns"),
+    key("bodies[].normal", K::Direction, "", "Rigid plane, required there: normal that points out of the body"),
+    key("bodies[].axis", K::Direction, "\"x\"", "Cylinder, rigid or of loose particles: direction from its beginning to its end"),
+    key("bodies[].inside", K::Flag, "false", "Rigid box, cylinder and sphere: true makes a container, which holds particles inside"),
+    key("bodies[].velocity", K::Table, "", "Rigid: prescribed velocity, by components; the others are held, or free"),
+    key("bodies[].velocity.x", K::TimeFunction(D::VELOCITY), "", "Along x"),
+    key("bodies[].velocity.y", K::TimeFunction(D::VELOCITY), "", "Along y"),
+    key("bodies[].velocity.z", K::TimeFunction(D::VELOCITY), "", "Along z"),
+    key("bodies[].spin", K::Table, "", "Rigid: prescribed angular velocity about axes through its centre or point, by components"),
+    key("bodies[].spin.x", K::TimeFunction(D::RATE), "", "About x"),
+    key("bodies[].spin.y", K::TimeFunction(D::RATE), "", "About y"),
+    key("bodies[].spin.z", K::TimeFunction(D::RATE), "", "About z"),
+    key("bodies[].free", K::Text, "", "Rigid: axes along which it moves under contacts, gravity and its force, such as \"z\""),
+    key("bodies[].free_rotation", K::Flag, "false", "Rigid box, cylinder and sphere: true lets it turn under contacts"),
+    key("bodies[].mass", K::Quantity(D::MASS), "", "Rigid, required where it is free: mass, > 0"),
+    key("bodies[].force", K::Table, "", "Rigid: force on it along its free axes, by components"),
+    key("bodies[].force.x", K::TimeFunction(D::FORCE), "0", "Along x"),
+    key("bodies[].force.y", K::TimeFunction(D::FORCE), "0", "Along y"),
+    key("bodies[].force.z", K::TimeFunction(D::FORCE), "0", "Along z"),
+    key("bodies[].size", K::Point(D::LENGTH), "", "Box, required there: lengths of its edges along x, y, z, > 0"),
+    key("bodies[].length", K::Quantity(D::LENGTH), "", "Cylinder, required there: length, > 0; that of a bonded body lies along x"),
+    key("bodies[].radius", K::Quantity(D::LENGTH), "", "Cylinder and sphere, required there: radius, > 0"),
+    key("bodies[].file", K::Text, "", "Stl, required there: STL file, that of a bonded body closed; loose particles, instead of a shape: CSV file of x, y, z, radius; relative to the case file"),
+    key("bodies[].unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the coordinates in the file"),
+    key("bodies[].particles", K::Integer, "10000", "Bonded: number of particles, 20 to 20 million. Loose: largest number of particles; without it as many as fit"),
+    key("bodies[].particle_radius", K::Quantity(D::LENGTH), "", "Mean particle radius, > 0; bonded: instead of their number; loose, required with a shape"),
+    key("bodies[].replaces", K::Text, "", "Bonded: solid body of which it replaces the tetrahedra wholly within the shape (or group). Its particles fill the region of these tetrahedra and are tied to the rest"),
+    key("bodies[].dispersion", K::Quantity(D::NONE), "0.25", "(largest - smallest)/mean of the particle radii, 0 to 1; 0 where loose particles say nothing"),
+    key("bodies[].seed", K::Integer, "1", "Bonded and particles: seed of the packing"),
+    key("bodies[].packing", K::Text, "", "Bonded: packing made by `fractum pack` (.fpk), relative to the case file, instead of a shape"),
+    key("bodies[].arrangement", K::Choice(names::<Arrangement>), "\"random\"", "Bonded box: arrangement of its particles. The regular ones have one radius, and 6 or 12 neighbours"),
+    key("bodies[].bond", K::Choice(names::<BondLawKind>), "\"cohesive-beam\"", "Bonded: law of the bonds. cohesive-beam: beams calibrated on the packing. local: interfaces with the numbers of the material. local-nonlocal: such interfaces beside the mean strain of their particles, so that the body has the elasticity of the material"),
+    key("bodies[].coordination", K::Quantity(D::NONE), "chosen to suit Poisson's ratio", "Bonded: mean number of bonds of a particle"),
+    key("bodies[].convention", K::Choice(names::<Convention>), "\"interior\"", "Bonded: which particles the coordination counts: those that touch no wall, or all"),
+    key("bodies[].groups", K::NamedTables, "", "Bonded and particles: further sets of its particles by name"),
+    key("bodies[].groups.NAME", K::Condition, "", "Condition on the centre of a particle; the set is called BODY.NAME"),
+    key("bodies[].contact", K::Table, "", "Rigid: contact with it. Keys that are absent have the values of its material, if it has one"),
+    key("bodies[].contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0; that of its material where it has one"),
+    key("bodies[].contact.rolling_friction", K::Quantity(D::NONE), "0", "Coefficient of rolling friction, ≥ 0: couple over normal force and reduced radius; that of its material where it has one"),
+    key("bodies[].contact.damping_ratio", K::Quantity(D::NONE), "0.1", "Fraction of critical damping, 0 to 1; that of its material where it has one"),
+    key("bodies[].contact.restitution", K::Quantity(D::NONE), "", "Coefficient of restitution, above 0 to 1, instead of the damping ratio"),
+    key("ties[]", K::Tables, "", "Particles of a bonded body that follow the surface of a solid where they touch it at the start, and give it their forces"),
+    key("ties[].solid", K::Text, "required", "Solid body, or mesh group of facets on the surface of one"),
+    key("ties[].bonded", K::Text, "required", "Bonded body, or set of its particles"),
+    key("ties[].within", K::Quantity(D::LENGTH), "a tenth of the mean particle radius", "Largest gap between particle and facet, > 0"),
+];
+
+fn bond_criteria() -> Vec<&'static str> {
+    FractureCriterion::KINDS.iter().map(|kind| kind.name).collect()
+}
+
+fn softenings() -> Vec<&'static str> {
+    vec!["exponential", "linear", "bilinear"]
+}
+
+fn regularisations() -> Vec<&'static str> {
+    vec!["none", "phase-field"]
+}
+
+fn areas() -> Vec<&'static str> {
+    vec!["cells", "porosity"]
+}
+
+fn distributions() -> Vec<&'static str> {
+    vec!["weibull", "weibull-per-edge", "uniform-per-edge"]
+}
+
+fn body_kinds() -> Vec<&'static str> {
+    vec!["solid", "bonded", "particles", "rigid"]
+}
+
+fn shapes() -> Vec<&'static str> {
+    vec!["plane", "box", "cylinder", "sphere", "group", "stl"]
+}

@@ -1,0 +1,156 @@
+//! Supports and loads.
+
+use fractum_math::{Sym3, Vec3};
+
+use super::{GroupUse, Selection};
+use crate::{Field, Place, Spanned, TimeFunction};
+
+/// Prescribed motion of nodes or particles.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Support {
+    /// Name, where given.
+    pub name: Option<Spanned<String>>,
+    /// Its nodes or particles.
+    pub on: Selection,
+    /// Bit a is set where the particles of a bonded body do not turn about axis a.
+    pub fix_rotation: Option<Spanned<u8>>,
+    /// Motion along x, y, z; `None` leaves the axis free. At least one is prescribed, or a rotation, or there is `surface`.
+    pub motion: [Option<Spanned<Motion>>; 3],
+    /// What answers to the motion of its facets.
+    pub surface: Option<Spanned<SurfaceSupport>>,
+}
+
+/// What answers to the motion of facets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SurfaceSupport {
+    /// Dashpots that let waves leave.
+    Absorbing,
+    /// Springs.
+    Elastic {
+        /// Stiffness along the normal [Pa/m], ≥ 0.
+        normal: f64,
+        /// Stiffness across it [Pa/m], ≥ 0.
+        tangential: f64,
+    },
+}
+
+/// Stress of the rock before the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InSitu {
+    /// Where it stands in the case.
+    pub place: Place,
+    /// Components xx, yy, zz, xy, yz, zx [Pa], tension positive; absent ones are zero.
+    pub stress: [Option<Spanned<Field>>; 6],
+    /// Groups of facets on which it acts, besides those of absorbing and elastic supports.
+    pub groups: Vec<Spanned<String>>,
+}
+
+impl InSitu {
+    /// The stress at a place [Pa].
+    pub fn at(&self, place: Vec3) -> Sym3 {
+        let [xx, yy, zz, xy, yz, zx] =
+            [0, 1, 2, 3, 4, 5].map(|i: usize| self.stress[i].as_ref().map_or(0.0, |field| field.value.at(place)));
+        Sym3::new(xx, yy, zz, xy, yz, zx)
+    }
+}
+
+impl Support {
+    /// What stands for it in messages: its name, else its group.
+    pub fn label(&self) -> &str {
+        self.name.as_ref().map_or_else(|| self.on.label(), |name| &name.value)
+    }
+}
+
+/// Motion along one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Motion {
+    /// At rest.
+    Fixed,
+    /// Velocity [m/s].
+    Velocity(TimeFunction),
+    /// Displacement from the initial position [m].
+    Displacement(TimeFunction),
+}
+
+/// A force on the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// Name, where given.
+    pub name: Option<Spanned<String>>,
+    /// What acts.
+    pub kind: LoadKind,
+}
+
+/// How pressure enters cracks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InCracks {
+    /// Speed of its front [m/s], > 0; everywhere at once if absent.
+    pub front_speed: Option<f64>,
+}
+
+/// Components along x, y, z; `None` = zero.
+pub type Components = [Option<Spanned<TimeFunction>>; 3];
+
+/// Kinds of loads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LoadKind {
+    /// Total force over the group [N].
+    Force {
+        /// The nodes or particles it is shared over.
+        on: Selection,
+        /// Components [N].
+        force: Components,
+    },
+    /// Force per area of fixed direction over facets [Pa].
+    Traction {
+        /// Facets by their group, by their nodes, or both.
+        on: Selection,
+        /// Components [Pa].
+        traction: Components,
+    },
+    /// Pressure that follows facets [Pa]; positive pushes into the solid.
+    Pressure {
+        /// Facets by their group, by their nodes, or both.
+        on: Selection,
+        /// Pressure [Pa].
+        pressure: Spanned<TimeFunction>,
+        /// How it enters the cracks that are open to the facets; not at all if absent.
+        in_cracks: Option<InCracks>,
+    },
+    /// Acceleration of the whole scene [m/s²].
+    Gravity {
+        /// Components [m/s²].
+        acceleration: Components,
+    },
+}
+
+impl LoadKind {
+    /// Its key in the case.
+    pub fn name(&self) -> &'static str {
+        match self {
+            LoadKind::Force { .. } => "force",
+            LoadKind::Traction { .. } => "traction",
+            LoadKind::Pressure { .. } => "pressure",
+            LoadKind::Gravity { .. } => "gravity",
+        }
+    }
+
+    /// What it acts on, and as what it uses a group of the mesh; none where it acts on everything.
+    pub fn on(&self) -> Option<(&Selection, GroupUse)> {
+        match self {
+            LoadKind::Force { on, .. } => Some((on, GroupUse::Force)),
+            LoadKind::Traction { on, .. } | LoadKind::Pressure { on, .. } => Some((on, GroupUse::Facets)),
+            LoadKind::Gravity { .. } => None,
+        }
+    }
+
+    /// The functions of time that it is made of.
+    pub fn functions(&self) -> Vec<&Spanned<TimeFunction>> {
+        match self {
+            LoadKind::Force { force: components, .. }
+            | LoadKind::Traction { traction: components, .. }
+            | LoadKind::Gravity { acceleration: components } => components.iter().flatten().collect(),
+            LoadKind::Pressure { pressure, .. } => vec![pressure],
+        }
+    }
+}

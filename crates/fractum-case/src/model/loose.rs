@@ -1,0 +1,44 @@
+//! Loose particles: spheres that nothing joins.
+
+use fractum_prepare::Region;
+
+use super::FileContent;
+use crate::{Field, Spanned};
+
+/// Loose particles of one material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LooseBody {
+    /// Index into `Case::materials`.
+    pub material: usize,
+    /// Where they come from.
+    pub source: LooseSource,
+    /// Sets of its particles by name, each with a condition on the position.
+    pub groups: Vec<(Spanned<String>, Field)>,
+    /// Initial velocity [m/s] along x, y, z; `None` = at rest.
+    pub initial_velocity: [Option<Field>; 3],
+}
+
+/// Where loose particles come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LooseSource {
+    /// A table of x, y, z and radius.
+    Table {
+        /// The file.
+        file: FileContent,
+        /// Length of its unit [m].
+        unit: f64,
+    },
+    /// A cloud that fills a region loosely: no two touch.
+    Cloud {
+        /// The region, with its place.
+        region: Spanned<Region>,
+        /// Mean radius [m], > 0.
+        radius: f64,
+        /// (R_max − R_min)/R_mean of the radii, 0 to 1.
+        dispersion: f64,
+        /// At most so many; `None` = as many as there is room for.
+        count: Option<Spanned<u64>>,
+        /// Seed of radii and places.
+        seed: u64,
+    },
+}

@@ -1,0 +1,97 @@
+//! `[heat]`, and what materials are to it.
+
+use fractum_scene::PackingConduction;
+
+use super::time_functions::time_function;
+use crate::model::{Heat, HeatCondition, HeatKind, HeatScheme, Solver, SolverKind, Thermal};
+use crate::reader::Table;
+use crate::reader::presence::{exactly_one, optional};
+use crate::reader::vectors::field;
+use crate::selection::selection;
+use crate::{Diagnostic, Spanned};
+
+/// Reads what a material is to heat; `Some(None)` where it says nothing.
+pub(super) fn thermal(material: &Table<'_>) -> Option<Option<Spanned<Thermal>>> {
+    let Some(table) = material.table("thermal") else { return Some(None) };
+    let place = table.place.clone();
+    let conductivity = table.quantity("conductivity").physical().required();
+    let heat_capacity = table.quantity("heat_capacity").physical().required();
+    let least = |value: &f64| value.abs() < 1.0;
+    let expansion = table.quantity("expansion").check(least, "a strain per kelvin, such as \"1e-5 1/K\"");
+    let expansion = expansion.or_if_absent(0.0);
+    table.finish("here");
+    let thermal = Thermal { conductivity: conductivity?, heat_capacity: heat_capacity?, expansion: expansion? };
+    Some(Some(Spanned::new(thermal, place)))
+}
+
+/// Reads heat, if there is any; nothing where it is wrong.
+pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> Option<Option<Heat>> {
+    let alone = |solver: &&Solver| solver.kind == SolverKind::Heat;
+    let Some(table) = root.table("heat") else {
+        if let Some(solver) = solver.filter(alone) {
+            let note = Diagnostic::error(&solver.place, "= \"heat\" without heat").expected("a table [heat]");
+            root.reader.note(note);
+            return None;
+        }
+        return Some(None);
+    };
+    let place = table.place.clone();
+    let initial = field(&table, "initial_temperature").spanned().required();
+    let stress_free = optional(&table, "stress_free_temperature", |name| table.quantity(name).positive().given());
+    let scheme = table.choice("scheme").or_if_absent(HeatScheme::Explicit);
+    let step = optional(&table, "step", |name| table.quantity(name).positive().spanned().given());
+    if let (Some(HeatScheme::Implicit), Some(None)) = (scheme, &step) {
+        table.reader.note_missing(&table.place_of("step"), "with scheme = \"implicit\": a time such as \"1 ms\"");
+        return None;
+    }
+    let packing = table.choice("packing").or_if_absent(PackingConduction::Measured);
+    let conditions: Vec<Option<HeatCondition>> = table.tables("conditions").into_iter().map(condition).collect();
+    table.finish("here");
+    if let Some(solver) = solver.filter(|solver| !matches!(solver.kind, SolverKind::Explicit | SolverKind::Heat)) {
+        let note = Diagnostic::error(&place, "is conducted in motion, or alone");
+        let note = note.expected("solver.kind = \"explicit\" or \"heat\"");
+        root.reader.note(note.remedy(format!("solver.kind at line {} is another one", solver.place.line)));
+        return None;
+    }
+    if staged {
+        root.reader.note(Diagnostic::error(&place, "stands beside stages").expected("one [solver] without stages"));
+        return None;
+    }
+    Some(Some(Heat {
+        place,
+        initial: initial?,
+        stress_free: stress_free?,
+        scheme: scheme?,
+        step: step?,
+        packing: packing?,
+        conditions: conditions.into_iter().collect::<Option<_>>()?,
+    }))
+}
+
+fn condition(table: Table<'_>) -> Option<HeatCondition> {
+    let on = selection(&table);
+    let kind = exactly_one(&table, &["temperature", "flux", "power", "source", "convection"]);
+    let function = |name| time_function(&table, name).spanned().required();
+    let kind = kind.and_then(|kind| match kind {
+        "temperature" => function(kind).map(HeatKind::Temperature),
+        "flux" => function(kind).map(HeatKind::Flux),
+        "power" => function(kind).map(HeatKind::Power),
+        "source" => function(kind).map(HeatKind::Source),
+        _ => convection(&table),
+    });
+    let on_surface = matches!(kind, Some(HeatKind::Flux(_) | HeatKind::Convection { .. }));
+    if kind.is_some() && !on_surface {
+        table.refuse("area", "without flux or convection");
+    }
+    let area = optional(&table, "area", |name| table.quantity(name).positive().spanned().given());
+    table.finish("here");
+    Some(HeatCondition { on: on?, area: area?, kind: kind? })
+}
+
+fn convection(condition: &Table<'_>) -> Option<HeatKind> {
+    let table = condition.table("convection")?;
+    let coefficient = table.quantity("coefficient").physical().required();
+    let ambient = time_function(&table, "ambient").spanned().required();
+    table.finish("here");
+    Some(HeatKind::Convection { coefficient: coefficient?, ambient: ambient? })
+}

@@ -1,0 +1,84 @@
+//! `[[bodies]]` of the kind `particles`.
+
+use fractum_math::Vec3;
+
+use super::bonded::{DISPERSION_RANGE, file, groups};
+use super::unit;
+use crate::model::{LooseBody, LooseSource, Region};
+use crate::reader::Table;
+use crate::reader::presence::optional;
+use crate::reader::vectors::{direction, initial_velocity, point};
+use crate::unit::Dimension;
+use crate::{Diagnostic, Spanned};
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Box,
+    Cylinder,
+    Sphere,
+}
+
+/// Reads loose particles of the material at `material`, which is nothing where it is wrong.
+pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
+    let source = if table.has("file") { from_table(table) } else { cloud(table) };
+    let groups = groups(table);
+    let initial_velocity = initial_velocity(table);
+    Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity: initial_velocity? })
+}
+
+fn from_table(table: &Table<'_>) -> Option<LooseSource> {
+    for key in
+        ["shape", "point", "size", "axis", "length", "radius", "particles", "particle_radius", "dispersion", "seed"]
+    {
+        table.refuse(key, "beside a file of particles");
+    }
+    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    let file = file(table, "file");
+    Some(LooseSource::Table { file: file?, unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)) })
+}
+
+fn cloud(table: &Table<'_>) -> Option<LooseSource> {
+    if !table.has("shape") {
+        let note = Diagnostic::error(&table.place, "has neither shape nor file");
+        table.reader.note(note.expected("a shape to fill with particles, or a file of x, y, z, radius"));
+    }
+    let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];
+    let kind = table.one_of("shape", &kinds).spanned().given();
+    let radius = table.quantity("particle_radius").positive();
+    let radius = if table.has("shape") { radius.required() } else { radius.given() };
+    let count = optional(table, "particles", |name| {
+        let count = table.integer(name).check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
+        count.spanned().given()
+    });
+    let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
+    let dispersion = dispersion.or_if_absent(0.0);
+    let seed = table.integer("seed").or_if_absent(1);
+    let region = match &kind {
+        Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
+        None => {
+            table.pass_over(&["point", "size", "axis", "length", "radius", "unit"]);
+            None
+        }
+    };
+    Some(LooseSource::Cloud { region: region?, radius: radius?, dispersion: dispersion?, count: count?, seed: seed? })
+}
+
+fn region(table: &Table<'_>, kind: Kind) -> Option<Region> {
+    let start = point(table, "point").or_if_absent(Vec3::zeros());
+    let length = |key: &'static str| table.quantity(key).positive().required();
+    Some(match kind {
+        Kind::Box => {
+            let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
+            Region::Box { point: start?, size: size? }
+        }
+        Kind::Cylinder => {
+            let axis = direction(table, "axis").or_if_absent(Vec3::x());
+            let (long, wide) = (length("length"), length("radius"));
+            Region::Cylinder { point: start?, axis: axis?, length: long?, radius: wide? }
+        }
+        Kind::Sphere => {
+            let wide = length("radius");
+            Region::Sphere { point: start?, radius: wide? }
+        }
+    })
+}

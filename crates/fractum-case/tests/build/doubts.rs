@@ -1,0 +1,221 @@
+//! Wrong units are told, and right ones raise no alarm.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use fractum_case::build::doubts;
+use fractum_case::{Diagnostic, Severity, parse_case, read_case};
+use fractum_math::Vec3;
+use fractum_mesh::generate::structured_box;
+use fractum_mesh::{Group, Mesh, read_msh};
+use fractum_output::warning::Code;
+
+fn cases_below(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap().flatten() {
+        let path = entry.path();
+        if path.is_dir() {
+            cases_below(&path, found);
+        } else if path.extension().is_some_and(|end| end == "toml") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn no_case_of_the_gallery_and_no_template_is_doubted() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut paths = Vec::new();
+    cases_below(&root.join("cases"), &mut paths);
+    cases_below(&root.join("crates/fractum/templates"), &mut paths);
+    let mut meshes: HashMap<PathBuf, Mesh> = HashMap::new();
+    let mut doubted = Vec::new();
+    let mut checked = 0;
+    for path in paths {
+        // Studies and tables of values are no cases.
+        let Ok(case) = read_case(&path, &[]) else { continue };
+        checked += 1;
+        let unusual = case.warnings().iter().filter(|warning| {
+            warning.remedy.starts_with("did you mean") || warning.remedy.starts_with("check the units")
+        });
+        doubted.extend(unusual.map(ToString::to_string));
+        let file = case.mesh.as_ref().map(|source| source.file.value.clone()).unwrap_or_default();
+        let mesh = meshes.entry(file).or_insert_with_key(|file| {
+            // Meshes too large for the repository are made by a command, and are empty here.
+            let mut mesh = fs::read(file).map_or_else(|_| Mesh::default(), |bytes| read_msh(&bytes).unwrap());
+            let unit = case.mesh.as_ref().map_or(1.0, |source| source.unit);
+            mesh.nodes.iter_mut().for_each(|node| *node *= unit);
+            mesh
+        });
+        // These have two elements through the thickness, to show what that costs, or far from where they are looked at.
+        let is_thin = ["depth-2", "ball-on-edge"].iter().any(|name| path.to_string_lossy().contains(name));
+        // Of the source, on elements of half a front.
+        let is_short = path.to_string_lossy().contains("granite-cylinder/pulse");
+        // Cut short, since what a step costs is all that is asked.
+        let is_cut = path.to_string_lossy().contains("cases/speed");
+        let known = [(is_thin, Code::ThinMesh), (is_short, Code::ShortPulse), (is_cut, Code::EndsEarly)];
+        let is_known = |doubt: &Diagnostic| known.iter().any(|(known, code)| *known && doubt.code == Some(*code));
+        let told = doubts(&case, mesh).into_iter().filter(|doubt| !is_known(doubt));
+        doubted.extend(told.map(|doubt| doubt.to_string()));
+    }
+    assert!(meshes.len() > 60, "{} meshes", meshes.len());
+    assert!(checked > 150, "{checked} cases");
+    assert!(doubted.is_empty(), "{}", doubted.join("\n"));
+}
+
+const BAR: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[materials.concrete]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.concrete.damage]
+tensile_strength = "3 MPa"
+fracture_energy = "100 J/m^2"
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "concrete"
+[[supports]]
+group = "x+"
+displacement = { x = "0.1 mm * t / 1 ms" }
+[solver]
+end = "1 ms"
+[[supports]]
+group = "x-"
+fix = "yz"
+"#;
+
+/// What is said of a bar with one text in place of another: warnings of the case, and doubts about a mesh of this length.
+fn said(old: &str, new: &str, length: f64, origin: f64) -> Vec<String> {
+    assert!(BAR.contains(old), "{old}");
+    let mut mesh = structured_box([8, 3, 3], Vec3::new(length, 0.3 * length, 0.3 * length), None);
+    mesh.nodes.iter_mut().for_each(|node| node.x += origin);
+    said_of(&BAR.replace(old, new), &mesh)
+}
+
+/// What is said of a case and its mesh.
+fn said_of(case: &str, mesh: &Mesh) -> Vec<String> {
+    let case = parse_case(case, Path::new("case.toml"), &[]);
+    let case = case.unwrap_or_else(|errors| panic!("{errors}"));
+    let all = case.warnings().iter().cloned().chain(doubts(&case, mesh));
+    all.inspect(|doubt| assert_eq!(doubt.severity, Severity::Warning)).map(|doubt| doubt.to_string()).collect()
+}
+
+#[track_caller]
+fn doubted(old: &str, new: &str, words: &[&str]) {
+    let all = said(old, new, 0.4, 0.0);
+    assert_eq!(all.len(), 1, "{all:?}");
+    assert!(words.iter().all(|word| all[0].contains(word)), "{all:?}");
+}
+
+#[test]
+fn a_wrong_unit_is_told_with_its_line_and_the_likely_one() {
+    assert_eq!(said("fractum = 1", "fractum = 1", 0.4, 0.0), [""; 0]);
+    doubted("\"2400 kg/m^3\"", "2.4", &["case.toml:4:11: ", "density = 2.4, which is 2.4 kg/m³", "\"2.4 g/cm^3\"?"]);
+    doubted("\"30 GPa\"", "30", &["case.toml:5:17: ", "= 30, which is 30 Pa", "\"30 GPa\"?"]);
+    doubted("\"3 MPa\"", "\"3 Pa\"", &["case.toml:8:20: ", "\"3 MPa\"?"]);
+    doubted("\"3 MPa\"", "\"30 GPa\"", &["case.toml:8:20: ", "of young_modulus", "check the units of both"]);
+    doubted("\"30 GPa\"", "\"30000 GPa\"", &["case.toml:5:17: ", "\"30000 MPa\"?"]);
+    // In N/mm the number is a thousandth.
+    doubted("\"100 J/m^2\"", "\"100 uJ/m^2\"", &["case.toml:9:19: ", "process zone", "\"100 J/m^2\"?"]);
+    doubted("0.1 mm * t", "100 mm * t / 1 us * 1 ms", &["case.toml:17:", "moves a body of 400 mm by 100 m"]);
+}
+
+#[test]
+fn a_parameter_is_doubted_where_it_stands() {
+    let text = "parameters = { strength = 3 }\nmesh = { file = \"bar.msh\" }";
+    let case = BAR.replace("mesh = { file = \"bar.msh\" }", text).replace("\"3 MPa\"", "\"strength\"");
+    let case = parse_case(&case, Path::new("case.toml"), &[]).unwrap();
+    let [doubt] = case.warnings() else { panic!("{:?}", case.warnings()) };
+    let text = doubt.to_string();
+    assert!(text.starts_with("case.toml:2:27: warning: parameters.strength is 3 Pa"), "{text}");
+    assert!(text.ends_with("did you mean \"3 MPa\"? [unusual-value]"), "{text}");
+}
+
+#[test]
+fn a_mesh_in_another_unit_is_told() {
+    let all = said("fractum = 1", "fractum = 1", 400.0, 0.0);
+    assert!(all.len() == 1 && all[0].contains("set mesh.unit = \"mm\"") && all[0].contains("400 m large"), "{all:?}");
+    let rock = said("[solver]", "[[loads]]\ngravity = { y = \"-9.81 m/s^2\" }\n[solver]", 400.0, 0.0);
+    assert_eq!(rock, [""; 0], "rock may be large");
+    let unit = "mesh = { unit = \"mm\", file = \"bar.msh\" }";
+    let all = said("mesh = { file = \"bar.msh\" }", unit, 4e-4, 0.0);
+    assert!(all.iter().any(|doubt| doubt.contains("leave mesh.unit out")), "{all:?}");
+    let all = said("fractum = 1", "fractum = 1", 0.4, 4e8);
+    assert!(all.len() == 1 && all[0].contains("move the origin into the body"), "{all:?}");
+}
+
+#[test]
+fn loads_of_another_unit_are_told() {
+    let load = |load: &str| said("[solver]", &format!("[[loads]]\n{load}\n[solver]"), 0.4, 0.0);
+    let all = load("gravity = { y = -9810 }");
+    assert!(all.len() == 1 && all[0].contains("case.toml:19:17: ") && all[0].contains("mm/s^2?"), "{all:?}");
+    let all = load("group = \"x-\"\npressure = 8");
+    assert!(all.len() == 1 && all[0].contains("case.toml:20:12: ") && all[0].contains("is 8 Pa at most"), "{all:?}");
+}
+
+#[test]
+fn what_lasts_shorter_than_the_looks_of_a_long_run_is_not_doubted() {
+    let mesh = structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None);
+    let loaded = |support: &str, load: &str, end: &str| {
+        let case = BAR.replace("displacement = { x = \"0.1 mm * t / 1 ms\" }", support);
+        let solver = format!("[[loads]]\n{load}\n[solver]\nend = \"{end}\"");
+        said_of(&case.replace("[solver]\nend = \"1 ms\"", &solver), &mesh)
+    };
+    let pressure = |pressure: &str| loaded("fix = \"x\"", &format!("group = \"x-\"\npressure = {pressure}"), "1.5 s");
+    let pulse = "{ pulse = \"double-exponential\", peak = \"50 MPa\", rise_time = \"40 us\", decay_time = \"100 us\" }";
+    let bump = "{ ramp = [[\"0 s\", \"1 Pa\"], [\"10 us\", \"5 MPa\"], [\"20 us\", \"1 Pa\"]] }";
+    for right in [pulse, bump, "\"50 MPa*exp(-t/50 us)*t/10 us\""] {
+        assert_eq!(pressure(right), [""; 0], "{right}");
+    }
+    let small = "{ ramp = [[\"0 s\", \"0 Pa\"], [\"10 us\", \"8 Pa\"], [\"20 us\", \"0 Pa\"]] }";
+    let said = pressure(small);
+    assert!(said.len() == 1 && said[0].contains("is 8 Pa at most"), "{said:?}");
+    // Half a metre per second of the velocity is no way: it lasts 50 us, or swings.
+    let velocity = |velocity: &str| {
+        let support = format!("velocity = {{ x = {velocity} }}");
+        loaded(&support, "gravity = { y = \"-9.81 m/s^2\" }", "0.2 s")
+    };
+    let blow =
+        "{ ramp = [[\"0 s\", \"0 m/s\"], [\"10 us\", \"10 m/s\"], [\"50 us\", \"10 m/s\"], [\"60 us\", \"0 m/s\"]] }";
+    for right in [blow, "\"10 m/s*sin(2*pi*t/10 ms)\""] {
+        assert_eq!(velocity(right), [""; 0], "{right}");
+    }
+    let there_and_back = "{ ramp = [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"20 m/s\"], [\"0.1005 s\", \"20 m/s\"], [\"0.1015 s\", \"-20 m/s\"]] }";
+    let said = velocity(there_and_back);
+    assert!(said.len() == 1 && said[0].contains("moves a body of 400 mm by 2 m"), "{said:?}");
+}
+
+#[test]
+fn loads_of_every_stage_are_doubted_once() {
+    let stages = "[[loads]]\ngroup = \"x-\"\npressure = 8\nstages = [\"b\"]\n\
+                  [[loads]]\ngroup = \"x-\"\npressure = 7\n\
+                  [[stages]]\nname = \"a\"\nsolver = { end = \"1 ms\" }\n[[stages]]\nname = \"b\"\nsolver = { end = \"2 ms\" }";
+    let said = said("[solver]\nend = \"1 ms\"", stages, 0.4, 0.0);
+    let about = |text: &str| said.iter().filter(|doubt| doubt.contains(text)).count();
+    assert_eq!((said.len(), about("is 8 Pa at most"), about("is 7 Pa at most")), (2, 1, 1), "{said:?}");
+}
+
+#[test]
+fn only_solids_are_looked_at_for_their_distance_from_the_origin_and_with_all_their_edges() {
+    let group = |name: &str, tetrahedra: Vec<u32>, points: Vec<u32>| {
+        let dimension = if points.is_empty() { 3 } else { 0 };
+        Group { name: name.into(), dimension, tag: 1, tetrahedra, points, ..Group::default() }
+    };
+    let mut mesh = Mesh {
+        // The short edge joins the first node and the third.
+        nodes: [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1e-3, 0.0, 0.0], [0.0, 0.0, 1.0], [4e11, 0.0, 0.0]]
+            .map(Vec3::from)
+            .to_vec(),
+        tetrahedra: vec![[0, 1, 2, 3]],
+        points: vec![[4]],
+        groups: vec![group("body", vec![0], vec![]), group("target", vec![], vec![0])],
+        ..Mesh::default()
+    };
+    assert_eq!(said_of(BAR, &mesh), [""; 0], "the point far away belongs to no solid");
+    mesh.nodes.iter_mut().for_each(|node| node.y += 1e6);
+    let said = said_of(BAR, &mesh);
+    assert!(said.len() == 1 && said[0].contains("an edge of 1 mm"), "{said:?}");
+}

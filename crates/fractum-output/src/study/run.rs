@@ -1,0 +1,111 @@
+//! What came of the runs of a study.
+
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use crate::expectation::{Comparison, Expectation};
+use crate::number::or_null;
+
+/// Name of the axis of case files.
+pub const CASE: &str = "case";
+
+/// Name of the axis of the labelled settings of a study file.
+pub const SETTING: &str = "setting";
+
+/// One run of a study.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Planned {
+    /// The cases that it is compared with.
+    pub family: String,
+    /// What sets it apart within its family: axis and value, as case and setting or a varied key.
+    pub coordinates: Vec<(String, String)>,
+    /// Case file.
+    pub case: PathBuf,
+    /// Keys and values, as `--set` takes them.
+    pub overrides: Vec<(String, String)>,
+}
+
+/// A run of a study with its end.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Run {
+    /// What was to be run.
+    pub planned: Planned,
+    /// Results folder, from the folder of the study.
+    pub folder: PathBuf,
+    /// What came of it.
+    pub end: End,
+}
+
+/// How a run of a study ended.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum End {
+    /// It was not run, or was interrupted.
+    #[default]
+    Open,
+    /// It reached its end.
+    Finished(Box<Measured>),
+    /// It was refused or stopped itself, and why.
+    Failed(String),
+}
+
+/// What a finished run took and gave.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Measured {
+    /// Mean length of the edges of the elements of solids, else mean diameter of the particles [m].
+    #[serde(with = "or_null")]
+    pub size: f64,
+    /// Elements of solids.
+    pub elements: u64,
+    /// Particles of bonded and loose bodies.
+    pub particles: u64,
+    /// Steps done.
+    pub steps: u64,
+    /// Wall time of the whole run [s].
+    #[serde(with = "or_null")]
+    pub wall: f64,
+    /// Time of the processor, summed over threads [s]; absent where the system does not tell it.
+    pub processor: Option<f64>,
+    /// The references of the case, with errors.
+    pub expect: Vec<Expectation>,
+}
+
+impl Measured {
+    /// Run time by which settings are compared [s]: that of the processor, which other programs disturb less, or else wall time.
+    pub fn seconds(&self) -> f64 {
+        self.processor.unwrap_or(self.wall)
+    }
+
+    /// The largest relative error of the references that have one; infinite for a value that is no number, none without such references.
+    pub fn worst(&self) -> Option<f64> {
+        let relative = self.expect.iter().filter(|line| line.comparison == Comparison::Relative);
+        let errors = relative.map(|line| if line.error.is_finite() { line.error.abs() } else { f64::INFINITY });
+        errors.reduce(f64::max)
+    }
+
+    /// Whether there are references and all are met, relative ones within `share` instead of their own tolerance.
+    pub fn is_within(&self, share: f64) -> bool {
+        !self.expect.is_empty()
+            && self.expect.iter().all(|line| match line.comparison {
+                Comparison::Relative => line.error.abs() <= share,
+                _ => line.pass,
+            })
+    }
+}
+
+impl Run {
+    /// What it took and gave, if it reached its end.
+    pub fn measured(&self) -> Option<&Measured> {
+        match &self.end {
+            End::Finished(measured) => Some(measured),
+            End::Open | End::Failed(_) => None,
+        }
+    }
+
+    /// Its value on an axis of its family; empty where it has none.
+    pub fn on(&self, axis: &str) -> &str {
+        let found = self.planned.coordinates.iter().find(|(name, _)| name == axis);
+        found.map_or("", |(_, value)| value)
+    }
+}

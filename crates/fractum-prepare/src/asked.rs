@@ -1,0 +1,255 @@
+//! What is asked of bodies of particles: a shape or a file, a material, and how bonds are made.
+
+use fractum_calibrate::Micro;
+use fractum_dem::{FractureCriterion, LocalBond};
+use fractum_math::Vec3;
+use fractum_pack::{Arrangement, Convention, Domain};
+
+/// A bonded body to be made.
+#[derive(Clone, Debug)]
+pub struct BondedRequest<'a> {
+    /// Its name, for reports.
+    pub name: &'a str,
+    /// Where its particles come from.
+    pub packing: PackingRequest<'a>,
+    /// Mesh group of the solid that it takes the place of in part.
+    pub replaces: Option<&'a str>,
+    /// Law of its bonds.
+    pub law: BondLawKind,
+    /// Coordination of its bonds; `None` = chosen to suit Poisson's ratio.
+    pub coordination: Option<f64>,
+    /// How the coordination is counted.
+    pub convention: Convention,
+    /// What it is made of.
+    pub material: BondedSubstance,
+    /// Whether it is broken at rest.
+    pub at_rest: bool,
+}
+
+/// Where the particles of a bonded body come from.
+#[derive(Clone, Debug)]
+pub enum PackingRequest<'a> {
+    /// The bytes of a packing made before.
+    File(&'a [u8]),
+    /// A shape to fill.
+    Fill {
+        /// The shape.
+        shape: Shape<'a>,
+        /// How many particles, or how large.
+        size: ParticleSize,
+        /// κ = (R_max − R_min)/R_mean of the radii, 0 to 1.
+        dispersion: f64,
+        /// Seed of the packing.
+        seed: u64,
+        /// How the particles lie.
+        arrangement: Arrangement,
+    },
+}
+
+/// A shape to fill with particles.
+#[derive(Clone, Debug)]
+pub enum Shape<'a> {
+    /// One that needs no file.
+    Plain(Domain),
+    /// A mesh group: tetrahedra, or triangles that enclose a volume.
+    Group(&'a str),
+    /// The closed surface of an STL file.
+    Stl {
+        /// Content of the file.
+        bytes: &'a [u8],
+        /// Length of its unit [m].
+        unit: f64,
+    },
+}
+
+/// What a bonded body is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct BondedSubstance {
+    /// Mass density [kg/m³], > 0.
+    pub density: f64,
+    /// Young's modulus [Pa], > 0.
+    pub young_modulus: f64,
+    /// Poisson's ratio [-], between -1 and 0.5, both excluded.
+    pub poisson_ratio: f64,
+    /// Beams that are given; found by calibration otherwise.
+    pub beams: Option<Micro>,
+    /// Interfaces that are given.
+    pub interfaces: Option<Interfaces>,
+    /// When bonds break; they hold otherwise.
+    pub strength: Option<BondStrength>,
+    /// Faces of its cracks.
+    pub faces: fractum_dem::CrackFaces,
+}
+
+/// Loose particles to be made.
+#[derive(Clone, Copy, Debug)]
+pub struct LooseRequest<'a> {
+    /// Where they come from.
+    pub source: LooseFill<'a>,
+    /// Mass density [kg/m³], > 0.
+    pub density: f64,
+    /// Young's modulus [Pa], > 0.
+    pub young_modulus: f64,
+}
+
+/// Where loose particles come from.
+#[derive(Clone, Copy, Debug)]
+pub enum LooseFill<'a> {
+    /// A table of x, y, z and radius.
+    Table {
+        /// Content of the file.
+        bytes: &'a [u8],
+        /// Length of its unit [m].
+        unit: f64,
+    },
+    /// A cloud that fills a region loosely: no two touch.
+    Cloud {
+        /// The region.
+        region: &'a Region,
+        /// Mean radius [m], > 0.
+        radius: f64,
+        /// (R_max − R_min)/R_mean of the radii, 0 to 1.
+        dispersion: f64,
+        /// At most so many; `None` = as many as there is room for.
+        count: Option<u64>,
+        /// Seed of radii and places.
+        seed: u64,
+    },
+}
+
+/// How the particle size is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ParticleSize {
+    /// By the number of particles.
+    Count(u64),
+    /// By their mean radius [m], > 0.
+    Radius(f64),
+}
+
+/// Laws of bonds.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum BondLawKind {
+    /// Cohesive beams, calibrated on the packing.
+    #[default]
+    CohesiveBeam,
+    /// Interfaces of the local constitutive law, whose numbers are those of the material.
+    Local,
+    /// The same, beside the mean strain of particles, which follows Hooke's law.
+    LocalNonlocal,
+}
+
+/// Interfaces between the particles of a material.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interfaces {
+    /// Areas of the interfaces.
+    pub area: InterfaceArea,
+    /// Their law, with the elasticity of the material.
+    pub law: LocalBond,
+}
+
+/// Factor α on the area π min(r)² of an interface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum InterfaceArea {
+    /// By the number of neighbours, so that the cells of the particles fill the body (Oñate et al. 2017, eq. 25).
+    Cells,
+    /// 40 P/N for all, with porosity P and mean number of neighbours N.
+    Porosity,
+    /// Given.
+    Factor(f64),
+}
+
+/// When the bonds of a material break.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BondStrength {
+    /// The criterion with the strengths that are given.
+    pub criterion: FractureCriterion,
+    /// Tensile strength of the material [Pa], > 0, to which the criterion's own strengths are found; `None` = those are given.
+    pub tensile_strength: Option<f64>,
+    /// Strength in compression as it is given [Pa]; `None` = the criterion has its usual one, if any.
+    pub compressive_strength: Option<f64>,
+}
+
+/// Regions that a cloud can fill.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Region {
+    /// A box with faces normal to the axes.
+    Box {
+        /// Lower corner [m].
+        point: Vec3,
+        /// Edges [m], > 0.
+        size: Vec3,
+    },
+    /// A circular cylinder.
+    Cylinder {
+        /// Centre of the face where it begins [m].
+        point: Vec3,
+        /// Unit vector along it.
+        axis: Vec3,
+        /// Length [m], > 0.
+        length: f64,
+        /// Radius [m], > 0.
+        radius: f64,
+    },
+    /// A sphere.
+    Sphere {
+        /// Centre [m].
+        point: Vec3,
+        /// Radius [m], > 0.
+        radius: f64,
+    },
+}
+
+/// Why a body cannot be made.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// What of the request it is about.
+    pub at: At,
+    /// What is wrong.
+    pub found: String,
+    /// What was expected; empty where `found` says it.
+    pub expected: &'static str,
+    /// What to do; empty where that is plain.
+    pub remedy: &'static str,
+}
+
+impl Fault {
+    pub(crate) fn new(at: At, found: impl ToString) -> Self {
+        Fault { at, found: found.to_string(), expected: "", remedy: "" }
+    }
+
+    pub(crate) fn remedy(self, remedy: &'static str) -> Self {
+        Fault { remedy, ..self }
+    }
+}
+
+/// What of a request a fault is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum At {
+    /// The body as a whole.
+    Body,
+    /// Its material.
+    Material,
+    /// The coordination of its bonds.
+    Coordination,
+    /// The shape or region to fill.
+    Shape,
+    /// The mesh group or the file of the shape.
+    Source,
+    /// The content of the file of particles.
+    File,
+    /// The size or the number of particles.
+    Size,
+    /// The solid that it takes the place of.
+    Replaced,
+}
+
+/// A doubt about a body that can be made.
+#[derive(Clone, Debug)]
+pub struct Doubt {
+    /// Code of the warning.
+    pub code: fractum_output::warning::Code,
+    /// What is doubtful.
+    pub found: String,
+    /// What to do.
+    pub remedy: &'static str,
+}

@@ -1,0 +1,28 @@
+//! A body of particles, ready to be put into a scene.
+
+use fractum_dem::{AnyBondLaw, Particles};
+use fractum_math::Vec3;
+use fractum_scene::BondFracture;
+
+/// The particles of a bonded or loose body: packed or read, bonded and calibrated.
+#[derive(Clone, Debug)]
+pub struct PreparedBody {
+    /// Particles at rest.
+    pub particles: Particles,
+    /// The particles of each bond.
+    pub pairs: Vec<[u32; 2]>,
+    /// The law of its bonds.
+    pub law: AnyBondLaw,
+    /// Factors on the areas of the bonds; 1 where there are none.
+    pub shares: Vec<f64>,
+    /// Sets of particles that touch the walls of the shape, by name.
+    pub walls: Vec<(String, Vec<u32>)>,
+    /// How far each particle is from touching the walls of the shape exactly [m]; empty where that does not matter.
+    pub shift_to_walls: Vec<Vec3>,
+    /// Volume fraction of the interior of its packing.
+    pub fraction: f64,
+    /// When its bonds break, with the criterion's own strengths.
+    pub fracture: Option<BondFracture>,
+    /// Tetrahedra of the mesh that it takes the place of.
+    pub replaced: Vec<u32>,
+}
