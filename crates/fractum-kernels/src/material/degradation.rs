@@ -1,6 +1,4 @@
 use crate::Lane;
-#[cfg(not(feature = "std"))]
-use crate::exact::Exact as _;
 
 use super::Softening;
 
