@@ -237,7 +237,7 @@ impl MeanStrain {
     /// Energy of the mean strain of a particle [J].
     pub(super) fn energy_of(&self, particle: usize) -> f64 {
         let strain = self.strain[particle];
-        0.5 * self.volume[particle] * self.elasticity.stress(strain).dot(strain)
+        0.5 * self.volume[particle] * self.elasticity.hooke.stress(strain).dot(strain)
     }
 
     /// Energy of all mean strains [J].
@@ -257,7 +257,7 @@ impl MeanStrain {
                 let i = number * block + k;
                 *stress = match intact[i] {
                     true => {
-                        let own = elasticity.stress(strain[i]) * volume[i] - Sym3(deviation[k]);
+                        let own = elasticity.hooke.stress(strain[i]) * volume[i] - Sym3(deviation[k]);
                         let whole = (Mat3::identity() + matrix(&gradient[i]).transpose()) * own.to_matrix();
                         [0, 1, 2].map(|column| Lane::from_vec(&whole.column(column).into()))
                     }

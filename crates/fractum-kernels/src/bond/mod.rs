@@ -14,6 +14,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::lanes::{Lanes, Vector};
+use crate::material::Hooke;
 use crate::{Rotation, Sym3, Vec3};
 
 /// How a bond pulls, bends and dissipates. A law sees one bond and what this remembers, never its neighbours.
@@ -266,20 +267,10 @@ impl<const W: usize> EnergyLanes<W> {
 /// Hooke's law of the mean strains of particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeanElasticity {
-    /// Lamé's λ [Pa].
-    pub lame: f64,
-    /// Shear modulus G [Pa].
-    pub shear_modulus: f64,
+    /// The law.
+    pub hooke: Hooke,
     /// Volume of the spheres over that of the body, > 0.
     pub fraction: f64,
-}
-
-impl MeanElasticity {
-    /// λ tr(E) I + 2 G E [Pa].
-    #[inline]
-    pub fn stress(&self, strain: Sym3) -> Sym3 {
-        Sym3::isotropic(self.lame * strain.trace()) + strain * (2.0 * self.shear_modulus)
-    }
 }
 
 /// What `W` bonds do that resist deviations from the mean strain of their particles.

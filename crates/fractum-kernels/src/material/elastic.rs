@@ -19,14 +19,13 @@ impl Elastic {
     /// Lamé's first parameter λ = E ν / ((1 + ν)(1 - 2ν)) [Pa].
     #[inline]
     pub fn lame_lambda(&self) -> f64 {
-        let (e, nu) = (self.young_modulus, self.poisson_ratio);
-        e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        Hooke::in_space(self.young_modulus, self.poisson_ratio).lambda
     }
 
     /// Shear modulus μ = E / (2 (1 + ν)) [Pa].
     #[inline]
     pub fn shear_modulus(&self) -> f64 {
-        self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
+        Hooke::in_space(self.young_modulus, self.poisson_ratio).mu
     }
 
     /// Speed of a compression wave in the bulk, √((λ + 2μ)/ρ) [m/s].
@@ -52,7 +51,7 @@ pub enum Plane {
 }
 
 /// Isotropic Hooke's law with the plane-stress variant.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hooke {
     /// Lamé's λ, in plane stress 2 λ μ/(λ + 2 μ) [Pa].
     pub lambda: f64,
@@ -63,14 +62,22 @@ pub struct Hooke {
 }
 
 impl Hooke {
+    /// The law in space and in plane strain.
+    #[inline]
+    pub fn in_space(young_modulus: f64, poisson_ratio: f64) -> Self {
+        let (e, nu) = (young_modulus, poisson_ratio);
+        Hooke { lambda: e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)), mu: e / (2.0 * (1.0 + nu)), zz: 1.0 }
+    }
+
     /// The law of a body in space, or of a plane one.
     #[inline]
     pub fn new(elastic: &Elastic, plane: Option<Plane>) -> Self {
-        let (lambda, mu) = (elastic.lame_lambda(), elastic.shear_modulus());
-        if plane == Some(Plane::Stress) {
-            return Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 };
+        let hooke = Hooke::in_space(elastic.young_modulus, elastic.poisson_ratio);
+        let Hooke { lambda, mu, .. } = hooke;
+        match plane {
+            Some(Plane::Stress) => Hooke { lambda: 2.0 * lambda * mu / (lambda + 2.0 * mu), mu, zz: 0.0 },
+            _ => hooke,
         }
-        Hooke { lambda, mu, zz: 1.0 }
     }
 
     /// Stress of a strain [Pa].

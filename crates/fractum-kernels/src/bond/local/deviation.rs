@@ -6,6 +6,7 @@ use crate::bond::{BondForces, BondLanes, BondedPair, DeviatingForces, EnergyLane
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
+use crate::material::Hooke;
 
 /// Strains of `W` interfaces in the axes of the undeformed body: the mean of their particles, and what they have beside it.
 struct Deviations<const W: usize> {
@@ -57,7 +58,8 @@ impl LocalBond {
     /// Stresses of Hooke's law at a mean strain that go beyond those of the interface, normal and across.
     #[inline(always)]
     fn mean_stress<const W: usize>(&self, mean: [Lanes<W>; 6], at: &Deviations<W>) -> (Lanes<W>, Vector<W>) {
-        let (lame, double) = (Lanes::splat(self.lame()), Lanes::splat(2.0 * self.shear_modulus()));
+        let Hooke { lambda, mu, .. } = self.hooke();
+        let (lame, double) = (Lanes::splat(lambda), Lanes::splat(2.0 * mu));
         ((mean[0] + mean[1] + mean[2]) * lame + at.mean.0 * double, scale(at.mean.1, double))
     }
 

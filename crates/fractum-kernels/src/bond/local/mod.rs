@@ -18,6 +18,7 @@ use crate::Sym3;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::lanes::{Lanes, Vector, add, cross, dot, rotate, rotate_back, scale, sub};
+use crate::material::Hooke;
 
 /// Stress at the interface of two particles from their relative displacement:
 ///
@@ -138,16 +139,16 @@ impl LocalBond {
         }
     }
 
-    /// λ = E ν/((1 + ν)(1 − 2ν)) [Pa].
+    /// The elastic law of the material.
     #[inline]
-    fn lame(&self) -> f64 {
-        self.young_modulus * self.poisson_ratio / ((1.0 + self.poisson_ratio) * (1.0 - 2.0 * self.poisson_ratio))
+    pub fn hooke(&self) -> Hooke {
+        Hooke::in_space(self.young_modulus, self.poisson_ratio)
     }
 
     /// G = E/(2(1 + ν)) [Pa].
     #[inline]
     pub fn shear_modulus(&self) -> f64 {
-        self.young_modulus / (2.0 * (1.0 + self.poisson_ratio))
+        self.hooke().mu
     }
 
     /// Whether there is any strength.
@@ -388,7 +389,7 @@ impl BondLaw for LocalBond {
 
     #[inline]
     fn mean_elasticity(&self) -> Option<MeanElasticity> {
-        let of = |fraction| MeanElasticity { lame: self.lame(), shear_modulus: self.shear_modulus(), fraction };
+        let of = |fraction| MeanElasticity { hooke: self.hooke(), fraction };
         self.mean_strain.map(of)
     }
 
