@@ -2,7 +2,7 @@
 //!
 //! - To compute with: [`history`] (`history.csv`, whose [`columns`] are one list), [`summary`] (`summary.json`), [`verified`]
 //!   (`verify.json`), [`expectation`], [`fragments`], [`attenuation`]; [`study`] is what several runs say together
-//! - To look at: [`frames`] (ParaView), whose [`fields`] are one list
+//! - To look at: [`frames`] (ParaView), whose [`fields`] are one list, and [`notes`] for the report
 //! - While it runs: [`log`] (`run.log` and the progress line), [`checkpoint`] (stop and go on, bit for bit)
 //! - For all of them: [`atomic`] (files that are whole or absent), [`number`] (numbers and units as text), [`warning`] (the
 //!   list of warnings), [`memory`] (what does not fit is refused), [`error`]

@@ -49,7 +49,7 @@
 
 mod error;
 mod input;
-pub mod output;
+mod output;
 mod phases;
 pub mod plan;
 mod plots;
