@@ -229,3 +229,15 @@ fn impossible_materials_are_refused_with_what_is_possible() {
     let error = calibrate(&Request { coordination: Some(90.0), ..request(1e9, 0.2) }).unwrap_err();
     assert!(matches!(error, CalibrateError::Pack(_)), "{error}");
 }
+
+#[test]
+#[cfg_attr(debug_assertions, ignore = "heavy: run with --release")]
+fn stress_of_neighbourhoods_is_that_of_the_section_as_in_table_1() {
+    let packing = pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), 10_000, 1)).unwrap();
+    for radius_ratio in [0.2, 0.6, 1.0] {
+        let sample = bonded(&packing, 10.0, radius_ratio, 500e9);
+        let [_, first, second] = lab::virial_errors(&sample, sample.fraction, Tolerance::default()).unwrap();
+        // The authors print 0.66 to 1.51 % and 1.37 to 2.14 %.
+        assert!(first.abs() < 0.02 && second.abs() < 0.0214, "r_m {radius_ratio}: {first} {second}");
+    }
+}

@@ -9,6 +9,7 @@ mod hydrostatic;
 mod shear;
 mod tension;
 mod vibration;
+mod virial;
 
 pub use bending::{Bending, Torsion, bending, torsion};
 pub use breaking::{
@@ -21,6 +22,7 @@ pub use hydrostatic::{Hydrostatic, hydrostatic};
 pub use shear::{Shear, shear};
 pub use tension::{Tension, tension};
 pub use vibration::{Impact, Vibration, VibrationMode, impact, vibration};
+pub use virial::virial_errors;
 
 use fractum_dem::Dof6;
 use fractum_math::Vec3;

@@ -30,6 +30,15 @@ pub(crate) enum LabCommand {
         #[arg(long, default_value_t = 3)]
         seeds: u64,
     },
+    /// Table 1 of Nguyen et al. (2019): stress of particles and their neighbours against that of a pulled cube.
+    Virial {
+        /// Packings per row.
+        #[arg(long, default_value_t = 3)]
+        seeds: u64,
+        /// Particles per packing.
+        #[arg(long, default_value_t = 10_000)]
+        count: usize,
+    },
     /// A row of particles in free tension, bending and torsion against the clamped-free bar.
     Chain {
         /// Particles after the clamped one.
@@ -113,6 +122,7 @@ pub(crate) fn run(command: &LabCommand) -> Result<ExitCode, Failure> {
         LabCommand::Break(arguments) => lab_break::run(arguments)?,
         LabCommand::Strength(arguments) => lab_strength::run(arguments)?,
         LabCommand::Tables { seeds } => tables(*seeds).map_err(wrong)?,
+        LabCommand::Virial { seeds, count } => virial(*seeds, *count).map_err(wrong)?,
         LabCommand::Chain { particles } => chain(*particles).map_err(wrong)?,
         LabCommand::Convergence { seeds, largest, output } => convergence(*seeds, *largest, output)?,
     }
@@ -210,6 +220,30 @@ fn tables(seeds: u64) -> Result<(), CalibrateError> {
             100.0 * (k / target - 1.0),
             100.0 * sk,
         );
+    }
+    Ok(())
+}
+
+/// Stress of neighbourhoods in cubes of 2 mm at coordination 10, for five radii of the beams.
+fn virial(seeds: u64, count: usize) -> Result<(), CalibrateError> {
+    let cube = |seed| pack(&PackSpec::new(Domain::cuboid(2e-3, 2e-3, 2e-3), count, seed));
+    let packings: Vec<Packing> = (1..=seeds).map(cube).collect::<Result<_, _>>()?;
+    say!("{count} particles, {seeds} packings; mean stress of particles over F/(Ly Lz), less 1, in %");
+    say!("       volume fraction of the core      of the whole body");
+    say!("r_m    level 0  level 1  level 2    level 0  level 1  level 2");
+    for radius_ratio in [0.2, 0.4, 0.6, 0.8, 1.0] {
+        let mut sums = [0.0; 6];
+        for packing in &packings {
+            let mut sample = Sample::new(packing.clone(), 10.0, Convention::All)?;
+            sample.set_micro(Micro { radius_ratio, young_modulus: 500e9 })?;
+            let whole = packing.sphere_volume() / sample.measured_volume();
+            for (k, fraction) in [sample.fraction, whole].into_iter().enumerate() {
+                let errors = lab::virial_errors(&sample, fraction, Tolerance::default())?;
+                sums[3 * k..].iter_mut().zip(errors).for_each(|(sum, error)| *sum += error);
+            }
+        }
+        let [a, b, c, d, e, f] = sums.map(|sum| 100.0 * sum / seeds as f64);
+        say!("{radius_ratio:.1}  {a:+9.2}{b:+9.2}{c:+9.2}  {d:+9.2}{e:+9.2}{f:+9.2}");
     }
     Ok(())
 }

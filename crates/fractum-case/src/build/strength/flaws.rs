@@ -16,6 +16,10 @@ const LARGEST: f64 = 256.0;
 /// Expected number of flaws within reach of a point among those that are kept: one point in e⁶ has none, and the strength of the last one.
 const KEPT: f64 = 6.0;
 
+/// Ratio and number of the steps in which flaws are counted over their levels.
+const STEP: f64 = 1.1;
+const STEPS: usize = 440;
+
 /// A weak place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Flaw {
@@ -64,6 +68,22 @@ impl Reach {
         // Smaller spots need more flaws; elements bound it.
         let next = |level: f64| KEPT / spot(self.at(level)).max(least).min(most);
         (0..60).fold(KEPT / spot(self.radius).max(least).min(most), |level, _| next(level).max(level))
+    }
+
+    /// How many flaws up to a level reach a point on average.
+    ///
+    /// - `spot`, `least`, `most`: as those of [`level_kept`](Self::level_kept)
+    pub(super) fn expected(&self, level: f64, spot: impl Fn(f64) -> f64, least: f64, most: f64) -> f64 {
+        // Steps of a tenth downwards, over 18 decades.
+        let mut upper = level;
+        let of_step = |_| {
+            let lower = upper / STEP;
+            let middle = (lower * upper).sqrt();
+            let found = (upper - lower) * spot(self.at(middle)).max(least).min(most);
+            upper = lower;
+            found
+        };
+        (0..STEPS).map(of_step).sum()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Strength of the particles of bonded bodies by chance.
 
+use fractum_math::elementary::pow;
 use fractum_math::{Vec3, sphere_volume};
 use fractum_prepare::PreparedBody;
 use rayon::prelude::*;
@@ -10,8 +11,11 @@ use super::spots::weakest_of_particles;
 use crate::build::Context;
 use crate::model::{Material, Scatter};
 
-/// Diameter of a weak spot at the strength given, over the mean diameter of the particles: a crack of one particle alone does not run yet.
+/// Diameter of a weak spot as strong as its surroundings, over the mean diameter of the particles: a crack of one particle alone does not run yet.
 const DIAMETERS: f64 = 4.0;
+
+/// Expected number of flaws that are weaker than the surroundings of a spot, at a point of them.
+const WEAKER: f64 = 1.0;
 
 impl Context<'_> {
     /// Gives the particles of a body the strength of their weakest flaw, where the material has scatter.
@@ -25,13 +29,24 @@ impl Context<'_> {
         let count = radii.len().max(1) as f64;
         let spheres: f64 = radii.iter().map(|radius| sphere_volume(*radius)).sum();
         let mean_diameter = 2.0 * radii.iter().sum::<f64>() / count;
-        let reach = match weibull.correlation_length {
-            Some(length) => Reach::of_length(length),
-            None => Reach::of_crack(DIAMETERS * mean_diameter, weibull.modulus),
-        };
         let reference = weibull.reference.measure();
         let [particle, whole] = [fracture.volume / count, fracture.volume].map(|volume| volume / reference);
-        let most = reach.level_kept(|radius| sphere_volume(radius) / reference, particle, whole);
+        let spot = |radius: f64| sphere_volume(radius) / reference;
+        let reach = match weibull.correlation_length {
+            Some(length) => Reach::of_length(length),
+            None => {
+                // Bonds that are stronger hold a longer crack, so that the surroundings decide how large a spot must be.
+                let reach = |strength: f64| {
+                    Reach::of_crack(DIAMETERS * mean_diameter * strength * strength, weibull.modulus)
+                };
+                let is_weak = |strength: f64| {
+                    let level = pow(strength, weibull.modulus);
+                    reach(strength).expected(level, spot, particle, whole) < WEAKER
+                };
+                reach(last_of(is_weak))
+            }
+        };
+        let most = reach.level_kept(spot, particle, whole);
         let field = FlawField::new(seed.wrapping_mul(8), 3, fracture.volume / spheres / reference);
         let of_particle = |particle: usize| {
             let (centre, radius) = (centres[particle], radii[particle]);
@@ -52,4 +67,13 @@ impl Context<'_> {
         let report = WeibullReport::of(weibull, strength, fracture.volume, [reach.radius, mean_diameter], weakest);
         self.weibull.push(WeibullReport { body: body.to_owned(), ..report });
     }
+}
+
+/// The largest factor of which something is true that is true of all smaller ones, between a thousandth and a thousand.
+fn last_of(is_true: impl Fn(f64) -> bool) -> f64 {
+    let halve = |[low, high]: [f64; 2], _| {
+        let middle = (low * high).sqrt();
+        if is_true(middle) { [middle, high] } else { [low, middle] }
+    };
+    (0..40).fold([1e-3, 1e3], halve)[0]
 }
