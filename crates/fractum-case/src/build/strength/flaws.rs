@@ -14,7 +14,7 @@ use rand_pcg::Pcg64Mcg;
 const LARGEST: f64 = 256.0;
 
 /// Expected number of flaws within reach of a point among those that are kept: one point in e⁶ has none, and the strength of the last one.
-const KEPT: f64 = 6.0;
+pub(super) const KEPT: f64 = 6.0;
 
 /// Ratio and number of the steps in which flaws are counted over their levels.
 const STEP: f64 = 1.1;

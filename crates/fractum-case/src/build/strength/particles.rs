@@ -6,16 +6,13 @@ use fractum_prepare::PreparedBody;
 use rayon::prelude::*;
 
 use super::WeibullReport;
-use super::flaws::{Bounds, Flaw, FlawField, Reach};
+use super::flaws::{Bounds, Flaw, FlawField, KEPT, Reach};
 use super::spots::weakest_of_particles;
 use crate::build::Context;
 use crate::model::{Material, Scatter};
 
 /// Diameter of a weak spot as strong as its surroundings, over the mean diameter of the particles: a crack of one particle alone does not run yet.
 const DIAMETERS: f64 = 4.0;
-
-/// Expected number of flaws that are weaker than the surroundings of a spot, at a point of them.
-const WEAKER: f64 = 1.0;
 
 impl Context<'_> {
     /// Gives the particles of a body the strength of their weakest flaw, where the material has scatter.
@@ -35,13 +32,13 @@ impl Context<'_> {
         let reach = match weibull.correlation_length {
             Some(length) => Reach::of_length(length),
             None => {
-                // Bonds that are stronger hold a longer crack, so that the surroundings decide how large a spot must be.
+                // Stronger bonds stop a longer crack: a spot is so large that its crack runs through the strongest ones around it.
                 let reach = |strength: f64| {
                     Reach::of_crack(DIAMETERS * mean_diameter * strength * strength, weibull.modulus)
                 };
                 let is_weak = |strength: f64| {
                     let level = pow(strength, weibull.modulus);
-                    reach(strength).expected(level, spot, particle, whole) < WEAKER
+                    reach(strength).expected(level, spot, particle, whole) < KEPT
                 };
                 reach(last_of(is_weak))
             }
