@@ -84,7 +84,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.fracture.scatter", K::Table, "", "Random scatter of the strength of particles by Weibull's flaws in the volume"),
     key("materials.NAME.fracture.scatter.modulus", K::Quantity(D::NONE), "required", "Weibull modulus, > 0"),
     key("materials.NAME.fracture.scatter.reference_volume", K::Quantity(D::VOLUME), "required", "Volume of the specimens of which 63 % are weaker than the strength given, > 0"),
-    key("materials.NAME.fracture.scatter.correlation_length", K::Quantity(D::LENGTH), "4 particle diameters (ft/f)² of a flaw of strength f", "Diameter of the spot that a flaw weakens, the same for all flaws, > 0. A flaw weakens at least the particle around it"),
+    key("materials.NAME.fracture.scatter.correlation_length", K::Quantity(D::LENGTH), "4 particle diameters (s/f)² of a flaw of strength f, s the strength of places without a weak flaw", "Diameter of the spot that a flaw weakens, the same for all flaws, > 0. A flaw weakens at least the particle around it"),
     key("materials.NAME.fracture.scatter.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
     key("materials.NAME.contact", K::Table, "", "Contact of particles of this material, and of its discrete elements"),
     key("materials.NAME.contact.friction", K::Quantity(D::NONE), "0.5", "Coulomb friction coefficient, ≥ 0"),
