@@ -261,4 +261,15 @@ mod tests {
         assert!((reach.at(1.0 / 32.0) / 0.04 - 1.0).abs() < 1e-12);
         assert_eq!(Reach::of_length(0.02).at(1e-3), 0.01);
     }
+
+    #[test]
+    fn flaws_that_reach_a_point_are_counted() {
+        // The same spot for all; and one that goes with the level to the power of -6/5 and is bounded by 20.
+        let flat = Reach::of_length(0.02).expected(7.0, |radius| radius * radius, 0.0, 1.0);
+        assert!((flat / (7.0 * 1e-4) - 1.0).abs() < 1e-9, "{flat}");
+        let spots = Reach::of_crack(2.0, 5.0).expected(1.0, |radius| radius.powi(3), 0.0, 20.0);
+        let kink = 20f64.powf(-5.0 / 6.0);
+        let exact = 20.0 * kink + 5.0 * (kink.powf(-0.2) - 1.0);
+        assert!((spots / exact - 1.0).abs() < 2e-3, "{spots} of {exact}");
+    }
 }

@@ -33,9 +33,8 @@ impl Context<'_> {
             Some(length) => Reach::of_length(length),
             None => {
                 // Stronger bonds stop a longer crack: a spot is so large that its crack runs through the strongest ones around it.
-                let reach = |strength: f64| {
-                    Reach::of_crack(DIAMETERS * mean_diameter * strength * strength, weibull.modulus)
-                };
+                let reach =
+                    |strength: f64| Reach::of_crack(DIAMETERS * mean_diameter * strength * strength, weibull.modulus);
                 let is_weak = |strength: f64| {
                     let level = pow(strength, weibull.modulus);
                     reach(strength).expected(level, spot, particle, whole) < KEPT
