@@ -101,19 +101,23 @@ fn tree() -> BTreeMap<String, String> {
     found
 }
 
-/// Writes what differs, and takes away what is no longer there.
-fn write(folder: &Path, tree: &BTreeMap<String, String>) {
-    let mut open = vec![folder.to_owned()];
-    while let Some(path) = open.pop() {
-        for entry in fs::read_dir(&path).into_iter().flatten() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                open.push(path);
-            } else if !tree.contains_key(path.strip_prefix(folder).unwrap().to_str().unwrap()) {
-                fs::remove_file(path).unwrap();
-            }
+/// Takes away the files below a path that are no longer there, and the folders that they leave empty.
+fn clear(folder: &Path, path: &Path, tree: &BTreeMap<String, String>) {
+    for entry in fs::read_dir(path).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            clear(folder, &path, tree);
+            // A folder that still holds something stays.
+            let _ = fs::remove_dir(&path);
+        } else if !tree.contains_key(path.strip_prefix(folder).unwrap().to_str().unwrap()) {
+            fs::remove_file(path).unwrap();
         }
     }
+}
+
+/// Writes what differs, and takes away what is no longer there.
+fn write(folder: &Path, tree: &BTreeMap<String, String>) {
+    clear(folder, folder, tree);
     for (file, text) in tree {
         let path = folder.join(file);
         if fs::read_to_string(&path).ok().as_ref() != Some(text) {
