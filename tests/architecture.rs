@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use modules::Modules;
 
 /// What each crate may name of the others. A new crate or arrow is entered here on purpose, or not at all.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 20] = [
     ("fractum-kernels", &[]),
     ("fractum-math", &["kernels"]),
     ("fractum-parallel", &[]),
@@ -21,9 +21,10 @@ const ARROWS: [(&str, &[&str]); 19] = [
     ("fractum-calibrate", &["math", "dem", "pack"]),
     ("fractum-fem", &["kernels", "math", "mesh", "parallel"]),
     ("fractum-sparse", &["math"]),
+    ("fractum-faer", &[]),
     ("fractum-gas", &["math"]),
     ("fractum-heat", &["math", "sparse"]),
-    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "gas", "heat", "parallel"]),
+    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "faer", "gas", "heat", "parallel"]),
     ("fractum-output", &["math", "vtk", "fem", "dem", "scene"]),
     ("fractum-report", &["math", "vtk", "mesh", "fem", "scene", "output"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "output"]),
@@ -49,7 +50,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
 ];
 
 /// Crates whose kernels take numbers: no files, no printing, no wall clock, nothing of the case format.
-const BELOW_OUTPUT: [&str; 14] = [
+const BELOW_OUTPUT: [&str; 15] = [
     "fractum-kernels",
     "fractum-math",
     "fractum-parallel",
@@ -61,6 +62,7 @@ const BELOW_OUTPUT: [&str; 14] = [
     "fractum-calibrate",
     "fractum-fem",
     "fractum-sparse",
+    "fractum-faer",
     "fractum-gas",
     "fractum-heat",
     "fractum-scene",

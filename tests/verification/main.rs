@@ -8,6 +8,7 @@ mod gas;
 mod laws;
 mod leaving;
 mod meeting;
+mod modes;
 mod phase_field;
 mod plane;
 mod ranks;

@@ -72,6 +72,11 @@ pub fn instant_text(time: f64, at_rest: bool) -> String {
     if at_rest && time.is_finite() { format!("load factor {}", significant(time, 4)) } else { quantity(time, "s") }
 }
 
+/// The number of a natural vibration, which stands for an instant in a run that looks for these: `mode 3`.
+pub fn mode_text(number: f64) -> String {
+    format!("mode {}", significant(number, 6))
+}
+
 /// As [`instant_text`], where a bare time would not say what it is: `t = 5 ms`.
 pub fn at_instant(time: f64, at_rest: bool) -> String {
     format!("{}{}", if at_rest { "" } else { "t = " }, instant_text(time, at_rest))

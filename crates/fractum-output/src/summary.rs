@@ -59,6 +59,9 @@ pub struct Summary {
     /// Sizes of the fragments, velocities of the ground, and the largest overlap.
     #[serde(flatten)]
     pub breakage: Breakage,
+    /// Natural vibrations, of a run that looks for them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub modes: Option<NaturalVibrations>,
     /// Sizes at the end.
     pub counts: Counts,
     /// What is doubtful in the case, and what the run found while it went.
@@ -103,6 +106,34 @@ pub struct LargestOverlap {
     pub place: String,
     /// When it was found [s].
     pub time: f64,
+}
+
+/// Natural vibrations of a scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NaturalVibrations {
+    /// Connected pieces of the solids.
+    pub pieces: u64,
+    /// Rigid motions that nothing prevents.
+    pub rigid_motions: u64,
+    /// Motions without stiffness beside them.
+    pub mechanisms: u64,
+    /// Mass that is free to move along x, y and z [kg].
+    pub free_mass: [f64; 3],
+    /// The vibrations, the slowest first.
+    pub vibrations: Vec<NaturalVibration>,
+}
+
+/// A natural vibration.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NaturalVibration {
+    /// Vibrations in a second [1/s].
+    pub frequency: f64,
+    /// Participation in a motion of the ground along x, y and z [√kg], for a modal mass of 1 kg.
+    pub participation: [f64; 3],
+    /// Share of the free mass that such a motion sets in motion in this vibration [-].
+    pub mass_share: [f64; 3],
+    /// What is missing to balance, over the square of the angular frequency [-].
+    pub residual: f64,
 }
 
 /// A probe over the run.

@@ -129,6 +129,14 @@ codes! {
     DeepOverlap = "deep-overlap",
     /// A body that came apart into single nodes.
     SingleNodes = "single-nodes",
+    /// Solids that do not hang together, whose vibrations are those of their pieces.
+    InPieces = "in-pieces",
+    /// Rigid motions that nothing prevents.
+    RigidMotion = "rigid-motion",
+    /// Motions without stiffness within bodies.
+    Mechanism = "mechanism",
+    /// Natural vibrations that were not found as exactly as they should.
+    Unsettled = "unsettled",
     /// Bands of a phase field that have become one.
     MergedBands = "merged-bands",
 }

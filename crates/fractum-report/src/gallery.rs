@@ -8,7 +8,6 @@ use fractum_output::atomic::Group;
 use fractum_output::frames::cracks::lost_bonds;
 use fractum_output::frames::{Triangles, drawn_surfaces, extent};
 use fractum_output::notes::{BROKEN_BONDS, DAMAGE, PARTICLES, PictureNote, STRESS, TEMPERATURE};
-use fractum_output::number::instant_text;
 use fractum_scene::{BondedBody, CountKind, Scene};
 use serde::{Deserialize, Serialize};
 
@@ -107,9 +106,9 @@ impl Studio<'_> {
 /// Draws the scene for the folder `pictures` of the results; a picture that cannot be drawn is left out.
 ///
 /// - `skin`: that of its solids
-/// - `at_rest`: whether time is a load factor
+/// - `instant`: the instant in words
 /// - `files`: takes the pictures
-pub fn draw(scene: &Scene, skin: Skin, folder: &Path, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
+pub fn draw(scene: &Scene, skin: Skin, folder: &Path, instant: &str, files: &mut Group) -> Vec<PictureNote> {
     let (solid, bonded) = (&scene.solid, &scene.bonded);
     let size = extent(solid.reference.iter().chain(bonded.reference()));
     let attached = scene.attached_nodes();
@@ -138,7 +137,7 @@ pub fn draw(scene: &Scene, skin: Skin, folder: &Path, at_rest: bool, files: &mut
             rigid: drawn_surfaces(scene),
         },
         view: view_of(size),
-        when: format!("{}{}", instant_text(scene.clock.time, at_rest), magnified(scale)),
+        when: format!("{instant}{}", magnified(scale)),
     };
     let none = Field { label: "damage", unit: "1", facets: &[], balls: &[], damage: false };
     let mut notes = Vec::new();

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use fractum_math::Vec3;
+use fractum_math::elementary::sin;
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_output::frames::{Population, Triangles, corners, read_arrays, read_collection};
 use fractum_output::{ReadError, atomic};
@@ -176,7 +177,9 @@ impl Frames {
     }
 
     /// What is to be seen of an instant, and the values of facets and particles.
-    fn load(&self, instant: usize) -> Result<(Sight, [Vec<f64>; 2]), ReportError> {
+    ///
+    /// - `swing`: what displacements are multiplied with, beside their magnification
+    fn load(&self, instant: usize, swing: f64) -> Result<(Sight, [Vec<f64>; 2]), ReportError> {
         let (mut sight, mut facets, mut balls) = (Sight::default(), Vec::new(), Vec::new());
         for (population, path) in &self.index.0[instant] {
             let field = self.shown.array(*population);
@@ -189,7 +192,7 @@ impl Frames {
             let arrays = read(path, &wanted)?;
             let displacement = arrays.vectors("displacement");
             let mut points = arrays.vectors("Points");
-            let scale = if population.is_body() { self.scale } else { 1.0 };
+            let scale = swing * if population.is_body() { self.scale } else { 1.0 };
             for (x, u) in points.iter_mut().zip(&displacement) {
                 (0..3).for_each(|a| x[a] += scale * u[a]);
             }
@@ -232,10 +235,12 @@ impl Frames {
 
     /// Draws an instant.
     ///
+    /// - `swing`: as in a vibration, 1 at its end
+    ///
     /// # Errors
     /// [`ReportError::Input`] for a damaged frame or a size of picture that is out of range.
-    pub(crate) fn draw(&self, instant: usize, width: usize, height: usize) -> Result<Image, ReportError> {
-        let (sight, [mut facets, mut balls]) = self.load(instant)?;
+    pub(crate) fn draw(&self, instant: usize, swing: f64, width: usize, height: usize) -> Result<Image, ReportError> {
+        let (sight, [mut facets, mut balls]) = self.load(instant, swing)?;
         if facets.len() != sight.skin.triangles.len() {
             facets.clear();
         }
@@ -286,7 +291,12 @@ pub struct MovieSettings {
     pub height: usize,
     /// Frames per second.
     pub rate: u16,
+    /// Number of a natural vibration, which swings; none shows all frames.
+    pub mode: Option<usize>,
 }
+
+/// Pictures of one swing of a natural vibration.
+const SWING: usize = 24;
 
 /// What a movie shows.
 #[derive(Clone, Debug, PartialEq)]
@@ -306,11 +316,22 @@ pub struct Movie {
 /// # Errors
 /// [`ReportError::Input`] for a folder without frames or a size out of range; [`ReportError::Write`].
 pub fn movie(folder: &Path, output: &Path, settings: MovieSettings) -> Result<Movie, ReportError> {
-    let MovieSettings { width, height, rate } = settings;
+    let MovieSettings { width, height, rate, mode } = settings;
     let index = FrameIndex::open(folder)?;
-    let all: Vec<usize> = (0..index.len()).collect();
-    let frames = Frames::survey(index, &all)?;
-    let draw = |instant: usize| frames.draw(instant, width, height);
+    if mode.is_some_and(|mode| mode == 0 || mode > index.len()) || mode.is_some() && !folder.join("modes.csv").is_file()
+    {
+        let found = format!("{}: no mode {}", folder.display(), mode.unwrap_or(0));
+        return Err(ReportError::Input(format!(
+            "{found}; name a results folder of solver.kind = \"modes\", and one of its modes"
+        )));
+    }
+    let all: Vec<usize> = mode.map_or((0..index.len()).collect(), |mode| vec![mode - 1; SWING]);
+    let frames = Frames::survey(index, &all[..if mode.is_some() { 1 } else { all.len() }])?;
+    let draw = |picture: usize| {
+        let phase = 2.0 * std::f64::consts::PI * picture as f64 / SWING as f64;
+        let swing = if mode.is_some() { sin(phase) } else { 1.0 };
+        frames.draw(all[picture], swing, width, height)
+    };
     atomic::write(output, &animation([width, height], all.len(), rate, draw)?)?;
     let (label, unit) = frames.label();
     Ok(Movie { frames: all.len(), label, unit, range: frames.range })

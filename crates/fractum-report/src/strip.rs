@@ -4,7 +4,6 @@ use std::path::Path;
 
 use fractum_output::atomic::Group;
 use fractum_output::notes::{PictureNote, STRIP_FILE};
-use fractum_output::number::instant_text;
 
 use crate::movie::{FrameIndex, Frames};
 use crate::picture::ColourMap;
@@ -24,9 +23,14 @@ pub fn expected_pixels(frames: f64) -> f64 {
 /// only, or none can be drawn.
 ///
 /// - `peak`: when the load was largest [s]
-/// - `at_rest`: whether time is a load factor
+/// - `instant`: an instant in words
 /// - `files`: takes the pictures
-pub fn strip(folder: &Path, peak: Option<f64>, at_rest: bool, files: &mut Group) -> Vec<PictureNote> {
+pub fn strip(
+    folder: &Path,
+    peak: Option<f64>,
+    instant_text: &dyn Fn(f64) -> String,
+    files: &mut Group,
+) -> Vec<PictureNote> {
     let Some(index) = FrameIndex::open(folder).ok().filter(|index| index.len() > 1) else { return Vec::new() };
     let last = index.len() - 1;
     let times: Vec<f64> = (0..=last).map(|instant| index.time(instant)).collect();
@@ -39,12 +43,12 @@ pub fn strip(folder: &Path, peak: Option<f64>, at_rest: bool, files: &mut Group)
     let (label, unit) = frames.label();
     let note = |instant: usize| {
         let file = format!("{STRIP_FILE}{instant:05}.png");
-        let image = frames.draw(instant, STRIP[0], STRIP[1]).ok()?;
+        let image = frames.draw(instant, 1.0, STRIP[0], STRIP[1]).ok()?;
         files.add(&folder.join("pictures").join(&file), &image.to_png().ok()?);
         let peak = if Some(instant) == at_peak { " (nearest to the peak)" } else { "" };
         Some(PictureNote {
             file,
-            title: format!("{}{peak}", instant_text(times[instant], at_rest)),
+            title: format!("{}{peak}", instant_text(times[instant])),
             magnified: magnified(frames.scale),
             label: label.to_owned(),
             unit: unit.to_owned(),

@@ -12,6 +12,7 @@ use crate::fragment::{Fragment, joined, marked_pieces, single_share, solid_piece
 use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::ledger::{Books, Ledger};
+use crate::modes::Modes;
 use crate::watch::Watch;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
@@ -48,6 +49,8 @@ pub(crate) struct Optional {
     pub(crate) surface_supports: SurfaceSupports,
     /// Heat in solids and bonded bodies.
     pub(crate) heat: Option<Box<Heat>>,
+    /// Natural vibrations, once they have been looked for.
+    pub(crate) modes: Option<Box<Modes>>,
     /// What was noticed beyond the models of the scene.
     pub(crate) watch: Watch,
 }

@@ -3,6 +3,8 @@ use std::sync::Arc;
 use fractum_math::Ragged;
 use rayon::prelude::*;
 
+use crate::basis::Bundle;
+
 /// Which nodes are coupled: sorted rows with both triangles and the diagonal.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Pattern {
@@ -126,6 +128,33 @@ impl<const B: usize> BlockMatrix<B> {
             }
             *y = sum;
         });
+    }
+
+    /// Y = A X for several vectors, which share the reading of the matrix.
+    pub fn multiply_many(&self, x: &Bundle, y: &mut Bundle) {
+        let width = x.width;
+        if width == 0 {
+            return;
+        }
+        y.values.par_chunks_mut(B * width).enumerate().with_min_len(256).for_each(|(i, y)| {
+            y.fill(0.0);
+            for (&j, block) in self.pattern.row(i).iter().zip(self.row(i)) {
+                let x = &x.values[j as usize * B * width..][..B * width];
+                for (y, row) in y.chunks_exact_mut(width).zip(block) {
+                    for (x, &factor) in x.chunks_exact(width).zip(row) {
+                        y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
+                    }
+                }
+            }
+        });
+    }
+
+    /// Adds to the diagonal.
+    pub fn add_diagonal(&mut self, diagonal: &[[f64; B]], factor: f64) {
+        for (node, values) in diagonal.iter().enumerate() {
+            let place = self.pattern.place(node, node);
+            (0..B).for_each(|a| self.values[place][a][a] += factor * values[a]);
+        }
     }
 
     /// Takes held unknowns out: their rows and columns vanish, their diagonal keeps its size.

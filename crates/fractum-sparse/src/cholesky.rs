@@ -2,8 +2,10 @@ use std::mem;
 
 use thiserror::Error;
 
+use crate::basis::Bundle;
 use crate::block::{BlockMatrix, Pattern};
 use crate::dense::{Buffers, Columns, factor_panel, lower_product, solve_backward, solve_forward};
+use crate::modes::Inverse;
 use crate::ordering::nested_dissection;
 use crate::supernodes::Supernodes;
 
@@ -156,6 +158,12 @@ impl Factor {
         for (&old, value) in structure.order.iter().zip(unknowns.as_chunks::<B>().0) {
             x[old as usize] = *value;
         }
+    }
+}
+
+impl<const B: usize> Inverse<B> for Factor {
+    fn apply(&mut self, vectors: &mut Bundle) {
+        vectors.each_vector::<B>(|vector| self.solve(vector));
     }
 }
 

@@ -1,6 +1,8 @@
+use crate::basis::Bundle;
 use crate::block::BlockMatrix;
 use crate::cholesky::SparseError;
 use crate::coarse::{Coarse, Motions};
+use crate::modes::Inverse;
 
 /// Approximate inverse for conjugate gradients: a block incomplete Cholesky factorisation without fill, in single
 /// precision, plus a coarse space of rigid motions of clusters of nodes.
@@ -31,6 +33,22 @@ impl<const B: usize> Preconditioner<B> {
         self.local.solve(z);
         if let Some(coarse) = &mut self.coarse {
             coarse.add_correction(r, z);
+        }
+    }
+}
+
+impl<const B: usize> Inverse<B> for Preconditioner<B> {
+    fn apply(&mut self, vectors: &mut Bundle) {
+        let mut corrected = self.coarse.as_ref().map(|_| vectors.clone());
+        self.local.solve_many(vectors);
+        if let (Some(coarse), Some(corrected)) = (&mut self.coarse, &mut corrected) {
+            let mut sum = vec![[0.0; B]; vectors.values.len() / B / vectors.width.max(1)];
+            corrected.each_vector(|vector| {
+                sum.fill([0.0; B]);
+                coarse.add_correction(vector, &mut sum);
+                vector.copy_from_slice(&sum);
+            });
+            vectors.values.iter_mut().zip(&corrected.values).for_each(|(to, add)| *to += add);
         }
     }
 }
@@ -140,6 +158,62 @@ impl<const B: usize> Incomplete<B> {
                 }
             }
         }
+    }
+}
+
+impl<const B: usize> Incomplete<B> {
+    /// As [`Incomplete::solve`] for several vectors, which share the reading of the factor.
+    fn solve_many(&self, vectors: &mut Bundle) {
+        let width = vectors.width;
+        if width == 0 {
+            return;
+        }
+        let size = B * width;
+        let mut own = vec![0.0; size];
+        for i in 0..self.inverse.len() {
+            let (done, rest) = vectors.values.split_at_mut(i * size);
+            let now = &mut rest[..size];
+            for at in self.starts[i]..self.starts[i + 1] {
+                let x = &done[self.columns[at] as usize * size..][..size];
+                for (row, now) in self.blocks[at].iter().zip(now.chunks_exact_mut(width)) {
+                    subtract_rows(now, row.map(f64::from), x, width);
+                }
+            }
+            own.copy_from_slice(now);
+            now.fill(0.0);
+            for (a, now) in now.chunks_exact_mut(width).enumerate() {
+                for (b, own) in own.chunks_exact(width).enumerate().take(a + 1) {
+                    let factor = f64::from(self.inverse[i][a][b]);
+                    now.iter_mut().zip(own).for_each(|(now, own)| *now += factor * own);
+                }
+            }
+        }
+        for i in (0..self.inverse.len()).rev() {
+            let (before, rest) = vectors.values.split_at_mut(i * size);
+            let now = &mut rest[..size];
+            own.fill(0.0);
+            for (a, own) in own.chunks_exact_mut(width).enumerate() {
+                for (b, now) in now.chunks_exact(width).enumerate().skip(a) {
+                    let factor = f64::from(self.inverse[i][b][a]);
+                    own.iter_mut().zip(now).for_each(|(own, now)| *own += factor * now);
+                }
+            }
+            now.copy_from_slice(&own);
+            for at in self.starts[i]..self.starts[i + 1] {
+                let block = &self.blocks[at];
+                let y = &mut before[self.columns[at] as usize * size..][..size];
+                for (b, y) in y.chunks_exact_mut(width).enumerate() {
+                    subtract_rows::<B>(y, std::array::from_fn(|a| f64::from(block[a][b])), now, width);
+                }
+            }
+        }
+    }
+}
+
+/// Subtracts a sum of the rows of `x`.
+fn subtract_rows<const B: usize>(y: &mut [f64], factors: [f64; B], x: &[f64], width: usize) {
+    for (x, factor) in x.chunks_exact(width).zip(factors) {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y -= factor * x);
     }
 }
 

@@ -3,7 +3,8 @@
 //! - [`Pattern`] and [`BlockMatrix`]: who is coupled with whom, and how; assembly from cliques of nodes;
 //! - [`Factor`]: Cholesky factorisation by panels in a nested-dissection ordering, alike on every processor;
 //! - [`Preconditioner`], [`conjugate_gradients`]: an iterative solver with an incomplete factorisation and a coarse
-//!   space of rigid motions.
+//!   space of rigid motions;
+//! - [`lowest_pairs`]: the lowest eigenpairs of a stiffness and a lumped mass.
 //!
 //! Everything gives the same bits on any number of threads.
 //!
@@ -30,17 +31,22 @@
 //! assert!((x[2][0] - 3.0).abs() < 1e-14);
 //! ```
 
+mod basis;
 mod block;
 mod cholesky;
 mod coarse;
 mod conjugate;
 mod dense;
 mod incomplete;
+mod modes;
 mod ordering;
 mod supernodes;
 
+pub use basis::Bundle;
 pub use block::{BlockMatrix, Pattern};
 pub use cholesky::{Factor, SparseError};
 pub use coarse::Motions;
 pub use conjugate::{Convergence, conjugate_gradients};
 pub use incomplete::Preconditioner;
+pub use modes::{Inverse, Pairs, Search, Vibration, lowest_pairs};
+pub use ordering::nested_dissection;

@@ -8,7 +8,7 @@ const LEAF: usize = 20;
 /// Nodes in the order of elimination, `order[new] = old`.
 ///
 /// - `places`: positions of the nodes; only their order along the axes matters
-pub(crate) fn nested_dissection(pattern: &Pattern, places: &[[f64; 3]]) -> Vec<u32> {
+pub fn nested_dissection(pattern: &Pattern, places: &[[f64; 3]]) -> Vec<u32> {
     let nodes: Vec<u32> = (0..pattern.nodes() as u32).collect();
     let mut work = Dissection { pattern, places, side: vec![OUT; nodes.len()], order: Vec::with_capacity(nodes.len()) };
     // Filled from the last eliminated to the first.

@@ -24,7 +24,7 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
 use fractum_prepare::Cache;
-use fractum_scene::statics::{Control, NoEquilibrium, StaticSettings};
+use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings};
 use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
 
 use self::cost::Cost;
@@ -130,6 +130,7 @@ impl Plan {
         }
         match &built.statics {
             Some(settings) => self.describe_statics(scene, settings),
+            None if built.modes.is_some() => self.describe_modes(built),
             None if built.bonded_statics.is_some() => {
                 let unknowns = 6 * scene.bonded.particles.len() - scene.bonded.held_count();
                 let breaks = scene.bonded.can_break();
@@ -257,7 +258,7 @@ impl Plan {
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
-        if case.solver.kind != SolverKind::Heat {
+        if !matches!(case.solver.kind, SolverKind::Heat | SolverKind::Modes) {
             self.describe_what_moves(case, scene);
         }
     }
@@ -326,6 +327,20 @@ impl Plan {
         }
     }
 
+    fn describe_modes(&mut self, built: &BuiltScene) {
+        let (solid, Some(settings)) = (&built.scene.solid, built.modes) else { return };
+        let axes = if solid.is_plane() { 2 } else { 3 };
+        let unknowns = solid.reference.len() * axes - built.scene.supports().count();
+        let how = match settings.linear {
+            LinearSolver::Auto => "a factorisation or an iteration, by size",
+            LinearSolver::Direct => "a factorisation",
+            LinearSolver::Iterative => "an iteration",
+            LinearSolver::Faer => "a factorisation by faer, whose bits depend on the processor",
+        };
+        let count = settings.count;
+        self.add("modes", format!("the {count} slowest natural vibrations of {unknowns} unknowns, by {how}"));
+    }
+
     fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
         let plane = scene.solid.body(0).shape == ElementKind::T3;
         let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
@@ -338,6 +353,9 @@ impl Plan {
             }
         };
         self.add("equilibrium", format!("{unknowns} unknowns, {control}, to {}", instant_text(settings.end, true)));
+        if settings.linear == LinearSolver::Faer {
+            self.add("", "linear systems by faer: results differ in their last digits from processor to processor");
+        }
         if scene.solid.has_damage() {
             self.add("contact", "crack faces that close press on each other, without friction");
         }

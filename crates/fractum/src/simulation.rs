@@ -5,6 +5,7 @@ mod drive;
 mod end;
 mod finish;
 mod messages;
+mod modes;
 mod open;
 mod origin;
 
@@ -20,7 +21,7 @@ use fractum_fem::cracks;
 use fractum_fem::neighbours::SolidPart;
 use fractum_output::checkpoint::{self, Header, Identity};
 use fractum_output::log::Snapshot;
-use fractum_output::number::at_instant;
+use fractum_output::number::{at_instant, mode_text};
 use fractum_output::origin::Origin;
 use fractum_output::summary::Summary;
 use fractum_output::warning::Warning;
@@ -245,7 +246,7 @@ impl Simulation {
         self.messages.tell_event()?;
         self.recorder.check_frame()?;
         self.prepare_step()?;
-        if !self.is_over() && self.messages.progress.due(self.started.elapsed()) {
+        if !self.is_over() && !self.solver.shows_modes() && self.messages.progress.due(self.started.elapsed()) {
             self.messages.progress.show(&self.snapshot(), self.started.elapsed());
         }
         Ok(())
@@ -274,7 +275,13 @@ impl Simulation {
         if save_is_due {
             self.save()?;
         }
-        if self.recorder.frame_is_due(self.scene.clock.time, !self.solver.follows_path()) {
+        let by_time = !self.solver.follows_path();
+        let frame_is_due = match self.solver.shows_modes() {
+            // Before the first one nothing is to be seen.
+            true => self.scene.clock.step > 0,
+            false => self.recorder.frame_is_due(self.scene.clock.time, by_time),
+        };
+        if frame_is_due {
             ranks::gather_all(&mut self.scene);
             let Simulation { recorder, scene, phases, .. } = self;
             phases.timed(Part::Output, || recorder.frame(scene))?;
@@ -304,7 +311,7 @@ impl Simulation {
 
     /// An instant in words.
     fn instant(&self, time: f64) -> String {
-        at_instant(time, self.solver.rests())
+        if self.solver.shows_modes() { mode_text(time) } else { at_instant(time, self.solver.rests()) }
     }
 
     /// Waits until the pieces of frames that all processes write are on the disk.

@@ -17,6 +17,7 @@ mod interrupt;
 mod loose;
 mod meant;
 mod mesh;
+mod modes;
 mod new;
 mod parts;
 mod processor;

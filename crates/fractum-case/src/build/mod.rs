@@ -42,7 +42,7 @@ use fractum_output::frames::BuiltGauges;
 use fractum_parallel::Exchange;
 use fractum_prepare::PreparedBody;
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::StaticSettings;
+use fractum_scene::statics::{ModesSettings, StaticSettings};
 use fractum_scene::{
     BondedStaticSettings, FlatFaces, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
     TimeStepSettings,
@@ -62,6 +62,8 @@ pub struct BuiltScene {
     pub statics: Option<StaticSettings>,
     /// Settings of the solver that brings a bonded body from break to break; none for other runs.
     pub bonded_statics: Option<BondedStaticSettings>,
+    /// Settings of the search for natural vibrations, where the case asks for them.
+    pub modes: Option<ModesSettings>,
     /// The probes of the case that are measured, in the order of `Case::probes`; none for expressions.
     pub probes: Vec<Option<Box<dyn Probe>>>,
     /// Stations at which the largest velocity is kept.
@@ -202,6 +204,7 @@ impl<'a> Context<'a> {
         boundary_of_parts.iter_mut().for_each(|facets| facets.retain(touched));
         self.condition_particles(&mut bonded, &ties.attachments, &mut warnings);
         let bonded_statics = statics::bonded_statics(self, &bonded);
+        let modes = statics::modes(self);
         let probes = self.probes(&parts, &numbering, &surface, &solid, &supports, &bonded);
         let ppv = self.ppv_stations(&numbering, &solid);
         let gauges = self.gauges(&numbering, &solid, &bonded);
@@ -232,6 +235,7 @@ impl<'a> Context<'a> {
             statics: statics.filter(|_| statics::is_held(self, &scene)),
             scene,
             bonded_statics,
+            modes,
             probes,
             ppv,
             gauges,
@@ -335,7 +339,7 @@ impl<'a> Context<'a> {
             self.error(&stress.place.clone(), format!(": {error}"), "");
             return None;
         }
-        if !matches!(self.case.solver.kind, SolverKind::Static | SolverKind::Heat) {
+        if !matches!(self.case.solver.kind, SolverKind::Static | SolverKind::Heat | SolverKind::Modes) {
             precheck::check_time_step(self, &scene, warnings);
         }
         Some(scene)
@@ -355,7 +359,7 @@ impl<'a> Context<'a> {
                 safety: solver.safety,
                 // Without motion the step is of no use: its bound is cheap.
                 element_bound: solver.time_step == TimeStep::Element
-                    || matches!(solver.kind, SolverKind::Static | SolverKind::Heat),
+                    || matches!(solver.kind, SolverKind::Static | SolverKind::Heat | SolverKind::Modes),
                 fixed: solver.step.as_ref().filter(|_| solver.statics.is_none()).map(|step| step.value),
                 end: solver.end,
             },

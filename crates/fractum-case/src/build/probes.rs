@@ -60,6 +60,10 @@ impl Names for NamesOfScene<'_, '_> {
         holes.iter().position(|hole| hole.on.group_name() == group)
     }
 
+    fn vibrations(&self) -> usize {
+        self.context.case.solver.modes.map_or(0, |modes| modes.count)
+    }
+
     fn is_stage(&self) -> bool {
         !self.context.case.source.stage.is_empty()
     }

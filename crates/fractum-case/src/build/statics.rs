@@ -1,7 +1,7 @@
 //! What a quasi-static run needs, and what it cannot do.
 
 use fractum_fem::{LocalDamping, NotSecant, Solid};
-use fractum_scene::statics::{self, StaticSettings};
+use fractum_scene::statics::{self, ModesSettings, StaticSettings};
 use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 
 use super::Context;
@@ -112,6 +112,19 @@ pub(super) fn bonded_statics(context: &mut Context<'_>, bonded: &Bonded) -> Opti
         batch: options.batch,
         most_steps: options.most_steps,
     })
+}
+
+/// Settings of the search for natural vibrations; none for other solvers, or with errors noted.
+pub(super) fn modes(context: &mut Context<'_>) -> Option<ModesSettings> {
+    let options = context.case.solver.modes?;
+    let is_solid = |body: &&Body| matches!(body.kind, BodyKind::Solid(_));
+    if let Some(body) = context.case.bodies.iter().find(|body| !is_solid(body)) {
+        let found = format!("= \"modes\" with body \"{}\"", body.name.value);
+        let expected = "solid bodies: contact, particles and bonds have no part in natural vibrations";
+        context.error(&place_of_solver(context), found, expected);
+        return None;
+    }
+    Some(ModesSettings { count: options.count, linear: options.linear_solver })
 }
 
 fn place_of_solver(context: &Context<'_>) -> Place {

@@ -17,6 +17,7 @@ mod fragment_size;
 mod gas;
 mod heat;
 mod load;
+mod mode;
 mod moment;
 mod momentum;
 mod radial_cracks;
@@ -164,4 +165,5 @@ measures! {
     radial_cracks::RadialCracksAbout,
     damaged::Damaged,
     wave_speed::WaveSpeed,
+    mode::ModeOf,
 }

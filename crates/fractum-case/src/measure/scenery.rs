@@ -35,6 +35,9 @@ pub(crate) trait Names {
     /// Number of the hole of this group.
     fn hole(&self, group: &str) -> Option<usize>;
 
+    /// Number of natural vibrations that are looked for.
+    fn vibrations(&self) -> usize;
+
     /// Whether the case is one of several stages.
     fn is_stage(&self) -> bool;
 

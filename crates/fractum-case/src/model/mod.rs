@@ -39,7 +39,9 @@ pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, load_of};
 pub use rigid::{RigidBody, RigidShape};
 pub use scatter::{Distribution, Reference, Scatter, Weibull};
-pub use solver::{Control, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep};
+pub use solver::{
+    Control, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+};
 pub use tie::Tie;
 pub use verify::{NEIGHBOURS, Neighbour, Promise, Saying, Verify};
 

@@ -26,6 +26,8 @@ pub struct Solver {
     pub step: Option<Spanned<f64>>,
     /// Options of a static run, or of one that may become static; `None` with the explicit solver.
     pub statics: Option<StaticOptions>,
+    /// Natural vibrations that are looked for; with `SolverKind::Modes` only.
+    pub modes: Option<ModesOptions>,
     /// Where it is asked that fine elements take short steps by themselves; `None` where all take the same.
     pub subcycling: Option<Place>,
     /// What overlaps at the start does.
@@ -51,9 +53,20 @@ pub enum SolverKind {
     Auto,
     /// Conduction of heat alone.
     Heat,
+    /// Natural vibrations.
+    Modes,
 }
 
-choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto, "heat" => Heat });
+choice!(SolverKind { "explicit" => Explicit, "static" => Static, "auto" => Auto, "heat" => Heat, "modes" => Modes });
+
+/// What concerns natural vibrations only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModesOptions {
+    /// Number of vibrations, ≥ 1.
+    pub count: usize,
+    /// How linear systems are solved.
+    pub linear_solver: LinearSolver,
+}
 
 /// What concerns a static run only.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,7 +119,7 @@ pub struct Opening {
     pub end: f64,
 }
 
-choice!(LinearSolver { "auto" => Auto, "direct" => Direct, "iterative" => Iterative });
+choice!(LinearSolver { "auto" => Auto, "direct" => Direct, "iterative" => Iterative, "faer" => Faer });
 
 /// How the stable time step is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,8 @@ use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 use super::probes::ReadProbe;
 use crate::model::{
-    Body, BodyKind, Control, Damping, InitialOverlap, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+    Body, BodyKind, Control, Damping, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions,
+    StopWhen, TimeStep,
 };
 use crate::reader::Table;
 use crate::reader::vectors::{direction, point};
@@ -27,6 +28,8 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -
         refuse_motion(root, &table, &ALL, "with solver.kind = \"static\", where nothing moves fast");
     } else if is("kind", "heat") {
         refuse_motion(root, &table, &ALL, WHILE_CONDUCTING);
+    } else if is("kind", "modes") {
+        refuse_motion(root, &table, &ALL, WITH_MODES);
     } else if bodies.is_some_and(|bodies| !bodies.iter().any(is_of_particles)) {
         table.refuse("tchamwa_wielgosz", "where no body is made of particles");
     }
@@ -44,6 +47,9 @@ pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -
 
 /// Why what acts on motion has no effect on conduction alone.
 const WHILE_CONDUCTING: &str = "with solver.kind = \"heat\", where nothing moves";
+
+/// Why what acts on motion has no effect on natural vibrations.
+const WITH_MODES: &str = "with solver.kind = \"modes\", which looks for free vibrations";
 
 /// A key of the solver as it is written.
 fn entry_of_solver<'n>(root: &'n Table<'_>, key: &str) -> Option<&'n Entry> {
@@ -70,7 +76,12 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let table = root.table_or_empty("solver");
     let kind = table.choice("kind").or_if_absent(SolverKind::Explicit);
     let place = table.peek("kind").map_or_else(|| table.place_of("kind"), |node| node.place.clone());
-    let end = table.quantity("end").positive().required();
+    let modes = modes(root, &table, kind);
+    let end = match &modes {
+        // An instant is the number of a vibration.
+        Some(modes) => Some(modes.count as f64),
+        None => table.quantity("end").positive().required(),
+    };
     let end_place = table.place_below("end");
     if kind == Some(SolverKind::Heat) {
         refuse_while_conducting(root, &table);
@@ -84,7 +95,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
             }
             Some(None)
         }
-        None => Some(None),
+        Some(SolverKind::Modes) | None => Some(None),
     };
     if kind == Some(SolverKind::Auto) {
         table.refuse("step", "with kind = \"auto\": its meaning depends on the solver");
@@ -136,10 +147,44 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         initial_overlap,
         domain: domain?,
         statics: statics?,
+        modes,
         stop_when: stop_when?,
         balance_warning,
         balance_stop,
     })
+}
+
+/// What natural vibrations are looked for with; nothing with another solver.
+fn modes(root: &Table<'_>, table: &Table<'_>, kind: Option<SolverKind>) -> Option<ModesOptions> {
+    if kind != Some(SolverKind::Modes) {
+        table.refuse("count", "without kind = \"modes\"");
+        return None;
+    }
+    const OTHERS: [&str; 16] = [
+        "end",
+        "safety",
+        "time_step",
+        "step",
+        "subcycling",
+        "initial_overlap",
+        "domain",
+        "control",
+        "opening",
+        "tolerance",
+        "batch",
+        "no_equilibrium",
+        "max_steps",
+        "stop_when",
+        "balance_warning",
+        "balance_stop",
+    ];
+    OTHERS.iter().for_each(|key| table.refuse(key, "with kind = \"modes\""));
+    refuse_motion(root, root, &["loads", "in_situ"], WITH_MODES);
+    for body in root.tables("bodies") {
+        refuse_motion(root, &body, &["initial_velocity"], WITH_MODES);
+    }
+    let count = table.integer("count").check(|&count| count > 0, "at least 1").or(10) as usize;
+    Some(ModesOptions { count, linear_solver: table.choice("linear_solver").or(LinearSolver::Auto) })
 }
 
 /// Tells what has no effect where nothing moves.

@@ -125,6 +125,10 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
             let note = Diagnostic::error(&case.solver.place, "= \"auto\" in one of several stages");
             reader.note(note.expected("\"static\" or \"explicit\""));
         }
+        for case in cases.iter().filter(|case| case.solver.kind == SolverKind::Modes) {
+            let note = Diagnostic::error(&case.solver.place, "= \"modes\" in one of several stages");
+            reader.note(note.expected("one [solver] without stages"));
+        }
     }
     let output = cases.last()?.output.clone();
     cases.iter_mut().for_each(|case| case.output = output.clone());

@@ -14,7 +14,7 @@ fn the_sample_holds_every_key_of_the_list() {
     let missing: Vec<_> = keys().iter().map(|key| key.path).filter(|path| !found.contains(*path)).collect();
     // A fixed step excludes the safety factor, and a solver the keys of the other.
     let statics = |path: &str| {
-        let of = ["control", "linear_solver", "tolerance", "batch", "no_equilibrium", "max_steps"];
+        let of = ["control", "linear_solver", "tolerance", "batch", "no_equilibrium", "max_steps", "count"];
         path.strip_prefix("solver.").is_some_and(|key| of.contains(&key) || key.starts_with("opening"))
     };
     let staged = |path: &str| path.contains("stages");
@@ -25,6 +25,7 @@ fn the_sample_holds_every_key_of_the_list() {
     good(&SMALL.replace("end = 1e-3", "end = 1e-3\nstep = 1e-6"), &[]);
     good(&SMALL.replace("end = 1e-3", STATIC), &[]);
     good(BONDED_AT_REST, &[]);
+    good(&SMALL.replace("end = 1e-3", "kind = \"modes\"\ncount = 3\nlinear_solver = \"faer\""), &[]);
     good(&[SMALL, PRODUCTS].concat(), &[]);
     good(&SMALL.replace("[solver]\nend = 1e-3", STAGES), &[]);
 }

@@ -224,7 +224,7 @@ fn each_mistake_has_one_clear_message() {
             "end = 1e-3",
             "end = 1e-3\nqqqqqq = 0.5",
             "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, subcycling, initial_overlap, domain, control, \
-             opening, linear_solver, tolerance, batch, no_equilibrium, max_steps, stop_when, \
+             opening, linear_solver, tolerance, batch, no_equilibrium, max_steps, count, stop_when, \
              balance_warning, balance_stop",
         ),
         (

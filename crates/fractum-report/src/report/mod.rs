@@ -2,6 +2,7 @@
 
 mod charts;
 mod figure;
+mod modes;
 mod overlay;
 
 use std::path::Path;
@@ -20,7 +21,7 @@ use fractum_output::error::WriteError;
 use fractum_output::fragments::Fragment;
 use fractum_output::history::Table;
 use fractum_output::log::duration;
-use fractum_output::number::{grouped, instant_text, percent, quantity, significant};
+use fractum_output::number::{grouped, instant_text, mode_text, percent, quantity, significant};
 use fractum_output::summary::{Hashes, Status, Summary, Wall};
 use fractum_output::warning::Warning;
 
@@ -139,6 +140,7 @@ pub fn to_html(data: &ReportData) -> String {
                         div.grid { @for chart in &figures { figure { (PreEscaped(chart.to_svg())) } } }
                     }
                 }
+                (modes::vibrations(summary))
                 (probes(summary))
                 (fragments(&data.fragments))
                 (energies(summary))
@@ -165,8 +167,12 @@ fn heading(data: &ReportData) -> Markup {
             p {
                 span class={ "status " (status) } { (status) }
                 @if !data.case_file.is_empty() { (data.case_file) " · " }
-                (instant_text(time.end, time.at_rest)) @if time.at_rest { " after " } @else { " simulated in " }
-                (grouped(&time.steps.to_string())) " steps · "
+                @if let Some(found) = &data.summary.modes {
+                    (found.vibrations.len()) " natural vibrations · "
+                } @else {
+                    (instant_text(time.end, time.at_rest)) @if time.at_rest { " after " } @else { " simulated in " }
+                    (grouped(&time.steps.to_string())) " steps · "
+                }
                 (duration(wall.total)) " on " (threads) @if *threads == 1 { " thread" } @else { " threads" }
                 " · fractum " (fractum)
             }
@@ -285,7 +291,7 @@ fn probes(summary: &Summary) -> Markup {
                         tr {
                             td { (words(name)) }
                             td.number { (shown(probe.max)) }
-                            td.number { (instant_text(probe.time_of_max, summary.time.at_rest)) }
+                            td.number { (instant(summary, probe.time_of_max)) }
                             td.number { (shown(probe.min)) }
                             td.number { (shown(probe.r#final)) }
                         }
@@ -294,6 +300,11 @@ fn probes(summary: &Summary) -> Markup {
             }
         }
     }
+}
+
+/// An instant of a run, in words.
+fn instant(summary: &Summary, time: f64) -> String {
+    if summary.modes.is_some() && time.is_finite() { mode_text(time) } else { instant_text(time, summary.time.at_rest) }
 }
 
 fn fragments(fragments: &[Fragment]) -> Markup {

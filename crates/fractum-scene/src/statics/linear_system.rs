@@ -1,6 +1,6 @@
 use fractum_fem::{CellDamage, Solid};
 use fractum_math::Vec3;
-use fractum_sparse::SparseError;
+use fractum_sparse::{Pairs, Search, SparseError};
 
 use super::contact::Spring;
 use super::settings::{LinearSolver, StaticSettings};
@@ -11,6 +11,15 @@ use crate::scene::Scene;
 pub(super) enum LinearSystem {
     Plane(System<2>),
     Space(System<3>),
+}
+
+/// Eigenpairs with the motion of the nodes.
+pub(super) struct NodalPairs {
+    pub(super) values: Vec<f64>,
+    pub(super) shapes: Vec<Vec<Vec3>>,
+    pub(super) residuals: Vec<f64>,
+    pub(super) extensions: usize,
+    pub(super) converged: bool,
 }
 
 impl LinearSystem {
@@ -84,6 +93,27 @@ impl LinearSystem {
             LinearSystem::Plane(system) => system.sharpen(),
             LinearSystem::Space(system) => system.sharpen(),
         }
+    }
+
+    /// As [`System::lowest_pairs`]: eigenvalues, vectors of the nodes, residuals, and whether all are good enough.
+    pub(super) fn lowest_pairs(
+        &mut self,
+        solid: &Solid,
+        rigid: &[Vec<Vec3>],
+        shift: f64,
+        search: Search,
+    ) -> Result<NodalPairs, SparseError> {
+        fn nodal<const B: usize>(pairs: Pairs<B>) -> NodalPairs {
+            let vector = |own: [f64; B]| Vec3::from_fn(|a, _| if a < B { own[a] } else { 0.0 });
+            let shapes = pairs.vectors.into_iter().map(|own| own.into_iter().map(vector).collect()).collect();
+            let Pairs { values, residuals, extensions, converged, .. } = pairs;
+            NodalPairs { values, shapes, residuals, extensions, converged }
+        }
+        let damage = solid.cell_damage();
+        Ok(match self {
+            LinearSystem::Plane(system) => nodal(system.lowest_pairs(solid, &damage, rigid, shift, search)?),
+            LinearSystem::Space(system) => nodal(system.lowest_pairs(solid, &damage, rigid, shift, search)?),
+        })
     }
 
     pub(super) fn factor_entries(&self) -> Option<usize> {

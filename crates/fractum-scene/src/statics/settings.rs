@@ -22,6 +22,8 @@ pub enum LinearSolver {
     Direct,
     /// Conjugate gradients.
     Iterative,
+    /// Sparse Cholesky factorisation by the library faer.
+    Faer,
 }
 
 /// What happens where a step has no equilibrium.

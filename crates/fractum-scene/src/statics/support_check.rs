@@ -61,6 +61,27 @@ pub(super) fn pins(solid: &Solid, held: &[u8]) -> Vec<u8> {
     pinned
 }
 
+/// Connected pieces, and the rigid motions that nothing prevents: velocities of all nodes.
+///
+/// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
+pub(super) fn rigid_motions(solid: &Solid, held: &[u8]) -> (usize, Vec<Vec<Vec3>>) {
+    let pieces = pieces(solid);
+    let count = pieces.len();
+    let mut motions = Vec::new();
+    for (_, nodes) in pieces {
+        let mut piece = Piece::new(solid, &nodes, held);
+        while let Some(motion) = piece.free_motion() {
+            let mut velocities = vec![Vec3::zeros(); solid.reference.len()];
+            for &node in &nodes {
+                velocities[node as usize] = piece.velocity(&motion, solid.reference[node as usize]);
+            }
+            motions.push(velocities);
+            piece.gram += motion * motion.transpose();
+        }
+    }
+    (count, motions)
+}
+
 /// The supports of a connected piece as a quadratic form over its six rigid motions.
 struct Piece {
     centre: Vec3,

@@ -4,10 +4,14 @@ use std::sync::Arc;
 
 use fractum_fem::{CellDamage, Solid};
 use fractum_math::{Ragged, Vec3};
-use fractum_sparse::{BlockMatrix, Factor, Motions, Pattern, Preconditioner, SparseError, conjugate_gradients};
+use fractum_sparse::{
+    BlockMatrix, Factor, Inverse, Motions, Pairs, Pattern, Preconditioner, Search, SparseError, Vibration,
+    conjugate_gradients, lowest_pairs,
+};
 
 use super::LinearSolver;
 use super::contact::Spring;
+use super::faer::FaerFactor;
 
 /// Unknowns up to which one factorisation is cheaper than an iteration, in space and in the plane.
 const DIRECT: [usize; 2] = [25_000, 300_000];
@@ -38,6 +42,7 @@ pub struct LinearWork {
 
 enum Method<const B: usize> {
     Direct(Box<Factor>),
+    Faer(Box<FaerFactor>),
     Iterative(Option<Box<Preconditioner<B>>>),
 }
 
@@ -86,14 +91,17 @@ impl<const B: usize> System<B> {
         let places: Vec<[f64; 3]> = solid.reference.iter().map(|&p| p.into()).collect();
         let unknowns = nodes * B;
         let direct = match choice {
-            LinearSolver::Direct => true,
+            LinearSolver::Direct | LinearSolver::Faer => true,
             LinearSolver::Iterative => false,
             LinearSolver::Auto => {
                 unknowns <= DIRECT[usize::from(B == 2)] || reuse >= REUSE && unknowns <= DIRECT_IF_REUSED
             }
         };
-        let method =
-            if direct { Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)) } else { Method::Iterative(None) };
+        let method = match choice {
+            LinearSolver::Faer => Method::Faer(Box::new(FaerFactor::new::<B>(&pattern, &places)?)),
+            _ if direct => Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)),
+            _ => Method::Iterative(None),
+        };
         let held = if held.is_empty() { vec![0; nodes] } else { held.to_vec() };
         let zero = vec![[0.0; B]; nodes];
         Ok(System {
@@ -132,6 +140,11 @@ impl<const B: usize> System<B> {
         springs: &[Spring],
         anchored: bool,
     ) -> Result<(), SparseError> {
+        self.assemble(solid, damage, springs, anchored);
+        self.factorise()
+    }
+
+    fn assemble(&mut self, solid: &Solid, damage: &CellDamage, springs: &[Spring], anchored: bool) {
         self.matrix.clear();
         self.handed = None;
         let (matrix, pairs) = (&mut self.matrix, &self.pairs);
@@ -172,9 +185,13 @@ impl<const B: usize> System<B> {
         }
         let spare = matrix.largest_diagonal();
         matrix.hold(&self.held, spare);
+    }
+
+    fn factorise(&mut self) -> Result<(), SparseError> {
         self.work.factorisations += 1;
         match &mut self.method {
             Method::Direct(factor) => factor.refactor(&self.matrix),
+            Method::Faer(factor) => factor.refactor(&self.matrix),
             Method::Iterative(preconditioner) => {
                 let motions = Motions { places: &self.places, held: &self.held, cluster: CLUSTER };
                 *preconditioner = Some(Box::new(Preconditioner::new(&self.matrix, Some(motions))?));
@@ -192,6 +209,10 @@ impl<const B: usize> System<B> {
         let handed = self.handed.as_mut().filter(|_| self.sharpened > SHARPENED);
         match (handed, &mut self.method) {
             (Some(factor), _) | (None, Method::Direct(factor)) => {
+                self.solution.copy_from_slice(&self.right);
+                factor.solve(&mut self.solution);
+            }
+            (None, Method::Faer(factor)) => {
                 self.solution.copy_from_slice(&self.right);
                 factor.solve(&mut self.solution);
             }
@@ -227,7 +248,7 @@ impl<const B: usize> System<B> {
     /// Makes the solutions of this step sharper: where stiffnesses differ by a million, what the soft part lacks is nothing beside the
     /// forces of the stiff one. An iteration that is not sharp enough hands over to a factorisation. Whether there was anything to gain.
     pub(super) fn sharpen(&mut self) -> Result<bool, SparseError> {
-        if matches!(self.method, Method::Direct(_)) || self.sharpened > SHARPENED {
+        if !matches!(self.method, Method::Iterative(_)) || self.sharpened > SHARPENED {
             return Ok(false);
         }
         self.sharpened += 1;
@@ -240,10 +261,44 @@ impl<const B: usize> System<B> {
         Ok(true)
     }
 
+    /// The lowest eigenpairs of the stiffness at this damage and the masses of the nodes.
+    ///
+    /// - `rigid`: motions without stiffness that are known
+    /// - `shift`: what is added to the stiffness, over the mass, where it is singular [1/s²]
+    pub(super) fn lowest_pairs(
+        &mut self,
+        solid: &Solid,
+        damage: &CellDamage,
+        rigid: &[Vec<Vec3>],
+        shift: f64,
+        search: Search,
+    ) -> Result<Pairs<B>, SparseError> {
+        self.assemble(solid, damage, &[], false);
+        let own = |vector: &Vec3| std::array::from_fn(|a| vector[a]);
+        let rigid: Vec<Vec<[f64; B]>> = rigid.iter().map(|motion| motion.iter().map(own).collect()).collect();
+        // A node without elements does not vibrate.
+        let stands = |node: usize| self.matrix.pattern().row(node).len() > 1;
+        let of = |node: usize, a: usize| if self.held[node] >> a & 1 == 0 { solid.mass[node] } else { 0.0 };
+        let mass: Vec<[f64; B]> = (0..self.held.len())
+            .map(|node| if stands(node) { std::array::from_fn(|a| of(node, a)) } else { [0.0; B] })
+            .collect();
+        let stiffness = self.matrix.clone();
+        self.matrix.add_diagonal(&mass, shift);
+        self.factorise()?;
+        let vibration = Vibration { stiffness: &stiffness, mass: &mass, rigid: &rigid };
+        let inverse: &mut dyn Inverse<B> = match &mut self.method {
+            Method::Direct(factor) => &mut **factor,
+            Method::Faer(factor) => &mut **factor,
+            Method::Iterative(preconditioner) => &mut **preconditioner.as_mut().expect("the matrix was prepared"),
+        };
+        Ok(lowest_pairs(vibration, inverse, search))
+    }
+
     /// Entries of the factor, or of the matrix where there is none, and whether there is one.
     pub(super) fn entries(&self) -> (usize, bool) {
         match &self.method {
             Method::Direct(factor) => (factor.entries(), true),
+            Method::Faer(factor) => (factor.entries(), true),
             Method::Iterative(_) => (B * B * self.matrix.pattern().blocks(), false),
         }
     }
@@ -252,6 +307,7 @@ impl<const B: usize> System<B> {
     pub(super) fn factor_entries(&self) -> Option<usize> {
         match &self.method {
             Method::Direct(factor) => Some(factor.entries()),
+            Method::Faer(factor) => Some(factor.entries()),
             Method::Iterative(_) => None,
         }
     }

@@ -46,7 +46,14 @@ Examples:
 pub(super) const MOVIE: &str = "\
 Examples:
   fractum movie results/plate/case
-  fractum movie results/plate/case -o plate.png --rate 20 --width 1200 --height 900";
+  fractum movie results/plate/case -o plate.png --rate 20 --width 1200 --height 900
+  fractum movie results/ring/case-modes --mode 3";
+
+/// Of `fractum modes`.
+pub(super) const MODES: &str = "\
+Examples:
+  fractum modes cases/vibrating-cantilever/depth-4.toml --count 4
+  fractum movie results/vibrating-cantilever/depth-4-modes --mode 1";
 
 /// Of `fractum completions`.
 pub(super) const COMPLETIONS: &str = "\

@@ -12,6 +12,7 @@ mod manual;
 mod mesh;
 mod mesh_info;
 mod mesh_vtu;
+mod modes;
 mod movie;
 mod new;
 mod pack;
@@ -140,6 +141,9 @@ enum Command {
     /// Write the frames of a results folder as an animated picture (APNG), which browsers play.
     #[command(after_help = help::MOVIE)]
     Movie(movie::MovieArguments),
+    /// Find the natural vibrations of the solids of a case: frequencies, shapes, and the mass that each moves.
+    #[command(after_help = help::MODES)]
+    Modes(Box<modes::ModesArguments>),
     /// Fill a shape with particles and certify the packing.
     Pack(Box<pack::PackArguments>),
     /// Test bonded packings in the virtual laboratory.
@@ -232,6 +236,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Movie(arguments) => movie::run(&arguments),
+        Command::Modes(arguments) => modes::run(*arguments),
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Lab { command } => lab::run(&command),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

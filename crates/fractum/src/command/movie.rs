@@ -24,6 +24,9 @@ pub(crate) struct MovieArguments {
     /// Height in pixels.
     #[arg(long, default_value_t = 680)]
     height: usize,
+    /// Let this natural vibration swing, of a run with solver.kind = "modes".
+    #[arg(long)]
+    mode: Option<usize>,
 }
 
 /// Writes the movie.
@@ -33,9 +36,9 @@ pub(crate) struct MovieArguments {
 #[cfg(feature = "report")]
 pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
     use fractum_output::number::quantity;
-    let MovieArguments { folder, output, rate, width, height } = arguments;
+    let MovieArguments { folder, output, rate, width, height, mode } = arguments;
     let output = output.clone().unwrap_or_else(|| folder.join("movie.png"));
-    let settings = fractum::MovieSettings { width: *width, height: *height, rate: *rate };
+    let settings = fractum::MovieSettings { width: *width, height: *height, rate: *rate, mode: *mode };
     let movie = fractum::movie(folder, &output, settings)?;
     let [low, high] = [movie.range.0, movie.range.1].map(|value| quantity(value, movie.unit));
     fractum::say!("{}: {} frames, colours are {} from {low} to {high}", output.display(), movie.frames, movie.label);
@@ -49,6 +52,6 @@ pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
 #[cfg(not(feature = "report"))]
 pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
     // What was asked for is of no use here.
-    let MovieArguments { folder: _, output: _, rate: _, width: _, height: _ } = arguments;
+    let MovieArguments { folder: _, output: _, rate: _, width: _, height: _, mode: _ } = arguments;
     Err(fractum::report::no_report())
 }

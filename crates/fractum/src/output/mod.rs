@@ -2,6 +2,7 @@
 
 pub(crate) mod columns;
 pub(crate) mod fetch;
+pub(crate) mod modes;
 pub(crate) mod record;
 pub(crate) mod series;
 pub(crate) mod summary;

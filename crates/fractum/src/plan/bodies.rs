@@ -73,7 +73,8 @@ impl Plan {
         let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
         let friction = rigid.contact.friction;
         let index = scene.contacts.rigid_bodies().iter().position(|rigid_body| rigid_body.name == name);
-        let touches = scene.solid.body_count() > 0 && case.solver.kind != SolverKind::Static;
+        let touches =
+            scene.solid.body_count() > 0 && !matches!(case.solver.kind, SolverKind::Static | SolverKind::Modes);
         let touched = index.filter(|_| touches).map(|index| scene.holds_nodes(index));
         let how = match touched {
             Some(true) => ", holds nodes of solids",
@@ -203,7 +204,7 @@ impl Plan {
         let kinematics = match body.kinematics {
             Kinematics::Small => "small strains",
             Kinematics::Corotational => "corotational",
-            Kinematics::Auto if case.solver.kind == SolverKind::Static => "small strains",
+            Kinematics::Auto if matches!(case.solver.kind, SolverKind::Static | SolverKind::Modes) => "small strains",
             Kinematics::Auto => "small strains until it turns",
         };
         let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);

@@ -106,6 +106,10 @@ struct Written {
 impl Stage<'_> {
     /// Time of the steps [s].
     fn steps(&self, built: &mut BuiltScene, solver: &mut Solver) -> Option<f64> {
+        if built.modes.is_some() {
+            // The first step is the whole search.
+            return None;
+        }
         let breaks = built.scene.solid.has_damage();
         let Some(settings) = &built.statics else { return self.tried(&mut built.scene, solver, built.conducts_alone) };
         let increments = match settings.control {

@@ -40,6 +40,10 @@ impl Simulation {
 
     /// Looks at the state, and warns of what is noticed.
     pub(super) fn audit(&mut self) -> Result<(), Failure> {
+        if self.solver.shows_modes() {
+            // The size of a shape means nothing.
+            return self.warn_of_modes();
+        }
         self.scene.audit();
         self.keep_overlap();
         self.recorder.join_overlaps(&self.ranks);
@@ -142,7 +146,7 @@ impl Simulation {
     }
 
     /// Warns of the first of a kind.
-    fn warn_once(&mut self, warning: Warning) -> Result<(), Failure> {
+    pub(super) fn warn_once(&mut self, warning: Warning) -> Result<(), Failure> {
         let told = self.messages.warnings().iter().any(|before| before.code == warning.code);
         if told { Ok(()) } else { self.warn(warning) }
     }

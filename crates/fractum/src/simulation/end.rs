@@ -5,6 +5,7 @@ use fractum_output::number::percent;
 use fractum_output::summary::Status;
 use fractum_output::warning::Warning;
 use fractum_scene::StepError;
+use fractum_scene::statics::modes_of;
 
 use super::Simulation;
 use crate::output::series::index_of_max;
@@ -42,6 +43,9 @@ impl End {
 impl Simulation {
     /// Why there is no further step.
     pub(super) fn last_step(&self) -> String {
+        if let Some(found) = modes_of(&self.scene) {
+            return format!("{} natural vibrations were found", found.modes.len());
+        }
         let (time, end) = (self.time(), self.case.solver.end);
         match time >= end * (1.0 - 1e-9) {
             true => format!("{} is the end of the run", self.instant(end)),

@@ -10,12 +10,14 @@ use fractum_output::attenuation;
 use fractum_output::fragments::{self, Fragment};
 use fractum_output::frames::cracks::{self, Columns, FacetHistory};
 use fractum_output::notes::{self, Notes, PictureNote};
-use fractum_output::number::{at_instant, quantity, significant};
+use fractum_output::number::{at_instant, instant_text, mode_text, quantity, significant};
 use fractum_output::summary::{Breakage, Hashes, Status, Summary, hash_text};
+use fractum_scene::statics::{modes_of, show_mode};
 use fractum_scene::{Scene, fragment_size, ranks};
 
 use super::{End, Outcome, Saved, Simulation};
 use crate::error::{ExitCode, Failure};
+use crate::output::modes;
 use crate::output::summary;
 use crate::phases::Part;
 use crate::plots;
@@ -42,7 +44,12 @@ impl Simulation {
         }
         self.audit()?; // before the one step more
         self.record_last(&end)?;
-        self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
+        if self.solver.shows_modes() {
+            // The pictures show the slowest one.
+            show_mode(&mut self.scene, 1);
+        } else {
+            self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
+        }
         let pieces = self.scene.fragments();
         let end = self.audit_end(end)?;
         let (status, reason) = (end.status(), end.reason());
@@ -63,6 +70,7 @@ impl Simulation {
             },
             warnings: self.messages.warnings().to_vec(),
             time: summary::time(&clock, reason, self.solver.rests()),
+            modes: modes_of(&self.scene).map(modes::of_summary),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
         };
@@ -70,6 +78,9 @@ impl Simulation {
         let ppv = &summary.breakage.ppv;
         if !ppv.is_empty() {
             files.add(&self.folder.join("ppv.csv"), attenuation::to_csv(ppv).as_bytes());
+        }
+        if let Some(found) = &summary.modes {
+            files.add(&self.folder.join("modes.csv"), modes::to_csv(found).as_bytes());
         }
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
@@ -88,7 +99,6 @@ impl Simulation {
         // A file that could not be written is the reason, not what the page lacks then.
         files.finish()?;
         page?;
-        let at_rest = self.solver.rests();
         if let End::Failed(error) = &end {
             self.messages.log.line(error)?;
         }
@@ -96,8 +106,10 @@ impl Simulation {
             return Err(Failure::Elsewhere(ExitCode::Stopped));
         }
         let folder = self.folder.display();
+        let (at_rest, shows_modes) = (self.solver.rests(), self.solver.shows_modes());
+        let instant = |time: f64| if shows_modes { mode_text(time) } else { at_instant(time, at_rest) };
         let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
-            format!("{folder}: step {step}, {}", at_instant(time, at_rest))
+            format!("{folder}: step {step}, {}", instant(time))
         });
         match end {
             End::Failed(error) => Err(Failure::Stopped { error, saved }),
@@ -132,18 +144,20 @@ impl Simulation {
         skin: Skin,
         files: &mut Group,
     ) -> Result<Vec<PictureNote>, Failure> {
-        let (peak, at_rest) = (self.time_of_peak(), self.solver.rests());
+        let (at_rest, shows_modes) = (self.solver.rests(), self.solver.shows_modes());
+        let peak = self.time_of_peak().filter(|_| !shows_modes);
+        let instant = |time: f64| if shows_modes { mode_text(time) } else { instant_text(time, at_rest) };
         let Simulation { scene, folder, phases, recorder, .. } = self;
         phases.timed(Part::Output, || {
             create_folder(&folder.join("pictures"))?;
             add_cracks(scene, folder, &recorder.state().removed, files)?;
             let fragments = fragments::to_csv(&fragments_of(&scene.solid, pieces));
             files.add(&folder.join("fragments.csv"), fragments.as_bytes());
-            let mut pictures = report::draw(scene, skin, folder, at_rest, files);
+            let mut pictures = report::draw(scene, skin, folder, &instant(scene.clock.time), files);
             recorder.finish_frame()?;
             // Frames of a mesh that no process has whole may be larger than the memory of one.
             if !neighbours::is_divided(&scene.solid) {
-                pictures.extend(report::strip(folder, peak, at_rest, files));
+                pictures.extend(report::strip(folder, peak, &instant, files));
             }
             Ok(pictures)
         })

@@ -94,7 +94,7 @@ impl Simulation {
         let Simulation { scene, recorder, messages, .. } = &mut simulation;
         ranks.distribute(scene, |scene| recorder.watch_points(scene))?;
         ranks.share(scene).into_iter().try_for_each(|share| messages.log.line(share))?;
-        if goes_on.is_none() && !simulation.solver.moves() {
+        if goes_on.is_none() && !simulation.solver.moves() && !simulation.solver.shows_modes() {
             // A path begins where nothing acts.
             let Simulation { recorder, scene, solver, .. } = &mut simulation;
             recorder.row(scene, Measured { time: 0.0, dt: 0.0, in_motion: false }, false)?;
@@ -342,7 +342,7 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
 }
 
 /// Files of a run, beside its frames, its pictures, its states and the text of its case.
-const RESULTS: [&str; 12] = [
+const RESULTS: [&str; 13] = [
     "summary.json",
     "history.csv",
     "fields.pvd",
@@ -352,6 +352,7 @@ const RESULTS: [&str; 12] = [
     "cracks-solids.csv",
     "cracks-solids.vtp",
     "ppv.csv",
+    "modes.csv",
     "report.html",
     "movie.png",
     "pictures/notes.json",

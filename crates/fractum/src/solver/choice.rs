@@ -17,7 +17,9 @@ const MOST_NODES: usize = 300_000;
 /// Which solver suits a case that names one, why, and which end suits it, line by line; nothing where the case leaves it open,
 /// since [`choose`] has said it.
 pub(crate) fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str, String)> {
-    if built.scene.solid.body_count() == 0 || matches!(case.solver.kind, SolverKind::Auto | SolverKind::Heat) {
+    if built.scene.solid.body_count() == 0
+        || matches!(case.solver.kind, SolverKind::Auto | SolverKind::Heat | SolverKind::Modes)
+    {
         return Vec::new();
     }
     if let Some(why) = motion_only(case, &built.scene) {

@@ -4,6 +4,7 @@ mod breaking;
 pub(crate) mod choice;
 mod equilibrium;
 mod heat;
+mod modes;
 mod motion;
 
 use fractum_case::build::BuiltScene;
@@ -14,6 +15,7 @@ use crate::error::Failure;
 use crate::phases::Phases;
 use breaking::BreakingRun;
 use equilibrium::{EquilibriumRun, EquilibriumState};
+use modes::ModesRun;
 
 /// The solver of a run.
 pub(crate) enum Solver {
@@ -25,6 +27,8 @@ pub(crate) enum Solver {
     BondedStatic(Box<BreakingRun>),
     /// Heat, while nothing moves.
     Heat,
+    /// Natural vibrations.
+    Modes(ModesRun),
 }
 
 /// What a solver remembers beside the scene, for a checkpoint.
@@ -34,13 +38,14 @@ pub(crate) enum SolverState {
     Static(EquilibriumState),
     BondedStatic(BondedStaticState),
     Heat,
+    Modes,
 }
 
 impl SolverState {
     /// As [`Solver::rests`].
     pub(crate) fn rests(&self) -> bool {
         match self {
-            SolverState::Explicit | SolverState::Heat => false,
+            SolverState::Explicit | SolverState::Heat | SolverState::Modes => false,
             SolverState::Static(state) => !state.moves(),
             SolverState::BondedStatic(_) => true,
         }
@@ -77,6 +82,9 @@ impl Solver {
     /// # Errors
     /// A linear system that is too large; a bonded body without a first equilibrium.
     pub(crate) fn new(scene: &Scene, built: &BuiltScene, phases: &mut Phases) -> Result<Self, Failure> {
+        if let Some(settings) = built.modes {
+            return Ok(Solver::Modes(ModesRun::new(settings)));
+        }
         Ok(match (&built.statics, built.bonded_statics) {
             (Some(settings), _) => Solver::Static(Box::new(EquilibriumRun::new(scene, settings.clone())?)),
             (None, Some(settings)) => Solver::BondedStatic(Box::new(BreakingRun::new(scene, settings, phases)?)),
@@ -93,7 +101,7 @@ impl Solver {
             Solver::Explicit if moving => scene.renew_step(),
             Solver::Explicit => scene.start_from_rest(),
             Solver::Static(run) => run.take_over(),
-            Solver::BondedStatic(_) | Solver::Heat => {}
+            Solver::BondedStatic(_) | Solver::Heat | Solver::Modes(_) => {}
         }
     }
 
@@ -123,6 +131,7 @@ impl Solver {
             Solver::Static(run) => SolverState::Static(run.state()),
             Solver::BondedStatic(run) => SolverState::BondedStatic(run.state()),
             Solver::Heat => SolverState::Heat,
+            Solver::Modes(_) => SolverState::Modes,
         }
     }
 
@@ -132,12 +141,18 @@ impl Solver {
             Solver::Explicit | Solver::Heat => scene.is_finished(),
             Solver::Static(run) => run.is_finished(scene),
             Solver::BondedStatic(run) => run.is_finished(scene),
+            Solver::Modes(run) => run.is_finished(scene),
         }
     }
 
     /// Whether the scene moves all the time.
     pub(crate) fn is_explicit(&self) -> bool {
         matches!(self, Solver::Explicit)
+    }
+
+    /// Whether its instants are numbers of natural vibrations.
+    pub(crate) fn shows_modes(&self) -> bool {
+        matches!(self, Solver::Modes(_))
     }
 
     /// Whether its instants are load factors along a path of equilibria, unless it moves; else they are times.
@@ -155,7 +170,7 @@ impl Solver {
         match self {
             Solver::Explicit => true,
             Solver::Static(run) => run.moves(),
-            Solver::BondedStatic(_) | Solver::Heat => false,
+            Solver::BondedStatic(_) | Solver::Heat | Solver::Modes(_) => false,
         }
     }
 
@@ -171,6 +186,7 @@ impl Solver {
             Solver::Static(run) => run.step(scene, phases),
             Solver::BondedStatic(run) => run.step(scene, phases),
             Solver::Heat => heat::step(scene, measure, phases),
+            Solver::Modes(run) => run.step(scene, phases),
         }
     }
 
@@ -182,7 +198,7 @@ impl Solver {
     /// How much work it was, in words.
     pub(crate) fn effort(&self) -> Option<String> {
         match self {
-            Solver::Explicit | Solver::Heat => None,
+            Solver::Explicit | Solver::Heat | Solver::Modes(_) => None,
             Solver::Static(run) => Some(run.effort()),
             Solver::BondedStatic(run) => Some(run.effort()),
         }

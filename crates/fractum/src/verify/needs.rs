@@ -28,7 +28,7 @@ fn add_those_of_stage(case: &Case, parts: &mut BTreeSet<Part>) {
     if case.solver.kind == SolverKind::Heat {
         return;
     }
-    let moves = case.solver.kind != SolverKind::Static || rest_may_end(case);
+    let moves = !matches!(case.solver.kind, SolverKind::Static | SolverKind::Modes) || rest_may_end(case);
     if moves {
         parts.insert(Part::Motion);
     }

@@ -1,0 +1,42 @@
+//! Natural vibrations that a scene has found.
+
+use fractum_math::Vec3;
+
+/// A natural vibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mode {
+    /// Vibrations in a second [1/s].
+    pub frequency: f64,
+    /// What is missing to balance, M⁻¹ᐟ² (K φ − ω² M φ) over ω² [-].
+    pub residual: f64,
+    /// Participation in a motion of the ground along each axis, φᵀ M e [√kg].
+    pub participation: Vec3,
+    /// Motion of the nodes, of modal mass 1 [1/√kg]; the largest component is positive.
+    pub shape: Vec<Vec3>,
+}
+
+impl Mode {
+    /// Mass that a motion of the ground along each axis sets in motion in this vibration [kg].
+    pub fn effective_mass(&self) -> Vec3 {
+        self.participation.component_mul(&self.participation)
+    }
+}
+
+/// Natural vibrations of a scene.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Modes {
+    /// The vibrations, the slowest first.
+    pub modes: Vec<Mode>,
+    /// Connected pieces of the solids.
+    pub pieces: usize,
+    /// Rigid motions that nothing prevents.
+    pub rigid_motions: usize,
+    /// Motions without stiffness beside them.
+    pub mechanisms: usize,
+    /// Mass that is free to move along each axis [kg].
+    pub free_mass: Vec3,
+    /// Extensions of the basis, and entries of the factor; no entries where the solution is iterative.
+    pub work: (usize, Option<usize>),
+    /// Whether all residuals are small enough.
+    pub converged: bool,
+}

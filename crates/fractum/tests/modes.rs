@@ -1,0 +1,57 @@
+//! Natural vibrations as their user sees them.
+
+use std::fs;
+
+use crate::common::{BREAKING_BAR, SNAP_BACK, Workplace, summary};
+
+#[test]
+fn the_command_finds_the_vibrations_of_any_case_with_solids() {
+    let place = Workplace::new(SNAP_BACK);
+    let ended = place.fractum(&["modes", "case.toml", "--count", "4", "-o", "out", "--threads", "1"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("mode") && ended.stdout.lines().count() == 6, "{}", ended.stdout);
+    let found = summary(&place, "out");
+    let modes = &found["modes"];
+    assert_eq!(modes["rigid_motions"], 0);
+    let vibrations = modes["vibrations"].as_array().unwrap();
+    let frequencies: Vec<f64> = vibrations.iter().map(|mode| mode["frequency"].as_f64().unwrap()).collect();
+    assert!(frequencies.len() == 4 && frequencies.is_sorted() && frequencies[0] > 100.0, "{frequencies:?}");
+    let table = fs::read_to_string(place.path("out/modes.csv")).unwrap();
+    assert_eq!(table.lines().count(), 5, "{table}");
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    assert!(page.contains("Natural vibrations") && !page.contains("load factor"));
+    let frames = fs::read_dir(place.path("out/fields")).unwrap().count();
+    assert_eq!(frames, 4);
+    let movie = place.fractum(&["movie", "out", "--mode", "2"]);
+    assert_eq!(movie.code, Some(0), "{}", movie.stderr);
+    let none = place.fractum(&["movie", "out", "--mode", "5"]);
+    assert_eq!(none.code, Some(1));
+    assert!(none.stderr.contains("no mode 5"), "{}", none.stderr);
+    // The others give the same.
+    for solver in ["direct", "iterative", "faer"] {
+        let chosen = format!("solver.linear_solver=\"{solver}\"");
+        let out = format!("out-{solver}");
+        let ended = place.fractum(&["modes", "case.toml", "--count", "4", "-o", &out, "--quiet", "--set", &chosen]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let other = summary(&place, &out);
+        for (mode, frequency) in other["modes"]["vibrations"].as_array().unwrap().iter().zip(&frequencies) {
+            let ratio = mode["frequency"].as_f64().unwrap() / frequency;
+            assert!((ratio - 1.0).abs() < 1e-8, "{solver}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn what_is_not_held_is_told_and_what_is_no_solid_is_refused() {
+    let free = SNAP_BACK.lines().filter(|line| !line.starts_with("supports") && !line.starts_with("probes"));
+    let place = Workplace::new(&free.collect::<Vec<_>>().join("\n"));
+    let ended = place.fractum(&["modes", "case.toml", "--count", "2", "-o", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("6 rigid motions that nothing prevents"), "{}", ended.stderr);
+    let codes = summary(&place, "out")["warnings"].to_string();
+    assert!(codes.contains("rigid-motion") && !codes.contains("large-strain"), "{codes}");
+    let place = Workplace::new(BREAKING_BAR);
+    let ended = place.fractum(&["modes", "case.toml", "-o", "out"]);
+    assert_eq!(ended.code, Some(1));
+    assert!(ended.stderr.contains("body \"floor\"") && ended.stderr.contains("solid bodies"), "{}", ended.stderr);
+}
