@@ -11,8 +11,10 @@ pub struct Mode {
     pub residual: f64,
     /// Participation in a motion of the ground along each axis, φᵀ M e [√kg].
     pub participation: Vec3,
-    /// Motion of the nodes, of modal mass 1 [1/√kg]; the largest component is positive.
+    /// Motion of the nodes or particles, of modal mass 1 [1/√kg]; the largest component is positive.
     pub shape: Vec<Vec3>,
+    /// Rotation of the particles of bonded bodies, as the shape [1/(m √kg)]; none of solids.
+    pub turns: Vec<Vec3>,
 }
 
 impl Mode {
@@ -27,7 +29,7 @@ impl Mode {
 pub struct Modes {
     /// The vibrations, the slowest first.
     pub modes: Vec<Mode>,
-    /// Connected pieces of the solids.
+    /// Connected pieces.
     pub pieces: usize,
     /// Rigid motions that nothing prevents.
     pub rigid_motions: usize,

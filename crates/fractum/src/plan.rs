@@ -330,7 +330,9 @@ impl Plan {
     fn describe_modes(&mut self, built: &BuiltScene) {
         let (solid, Some(settings)) = (&built.scene.solid, built.modes) else { return };
         let axes = if solid.is_plane() { 2 } else { 3 };
-        let unknowns = solid.reference.len() * axes - built.scene.supports().count();
+        let of_solids = solid.reference.len() * axes - built.scene.supports().count();
+        let bonded = &built.scene.bonded;
+        let unknowns = of_solids + 6 * bonded.particles.len() - bonded.held_count();
         let how = match settings.linear {
             LinearSolver::Auto => "a factorisation or an iteration, by size",
             LinearSolver::Direct => "a factorisation",

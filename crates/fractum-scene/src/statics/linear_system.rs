@@ -3,6 +3,7 @@ use fractum_math::Vec3;
 use fractum_sparse::{Pairs, Search, SparseError};
 
 use super::contact::Spring;
+use super::modes::Found;
 use super::settings::{LinearSolver, StaticSettings};
 use super::system::{LinearWork, System};
 use crate::scene::Scene;
@@ -11,15 +12,6 @@ use crate::scene::Scene;
 pub(super) enum LinearSystem {
     Plane(System<2>),
     Space(System<3>),
-}
-
-/// Eigenpairs with the motion of the nodes.
-pub(super) struct NodalPairs {
-    pub(super) values: Vec<f64>,
-    pub(super) shapes: Vec<Vec<Vec3>>,
-    pub(super) residuals: Vec<f64>,
-    pub(super) extensions: usize,
-    pub(super) converged: bool,
 }
 
 impl LinearSystem {
@@ -102,12 +94,12 @@ impl LinearSystem {
         rigid: &[Vec<Vec3>],
         shift: f64,
         search: Search,
-    ) -> Result<NodalPairs, SparseError> {
-        fn nodal<const B: usize>(pairs: Pairs<B>) -> NodalPairs {
+    ) -> Result<Found<Vec<Vec3>>, SparseError> {
+        fn nodal<const B: usize>(pairs: Pairs<B>) -> Found<Vec<Vec3>> {
             let vector = |own: [f64; B]| Vec3::from_fn(|a, _| if a < B { own[a] } else { 0.0 });
             let shapes = pairs.vectors.into_iter().map(|own| own.into_iter().map(vector).collect()).collect();
             let Pairs { values, residuals, extensions, converged, .. } = pairs;
-            NodalPairs { values, shapes, residuals, extensions, converged }
+            Found { values, shapes, residuals, extensions, converged }
         }
         let damage = solid.cell_damage();
         Ok(match self {

@@ -7,6 +7,7 @@
 
 mod anderson;
 mod bonded;
+mod bonded_modes;
 mod contact;
 mod equilibrium;
 mod faer;
