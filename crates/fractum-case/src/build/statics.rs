@@ -7,7 +7,7 @@ use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 use super::Context;
 use super::bodies::Numbering;
 use crate::Place;
-use crate::model::{Body, BodyKind, Control, Damping, RigidShape, SolverKind};
+use crate::model::{Body, BodyKind, BondLawKind, Control, Damping, RigidShape, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -117,10 +117,14 @@ pub(super) fn bonded_statics(context: &mut Context<'_>, bonded: &Bonded) -> Opti
 /// Settings of the search for natural vibrations; none for other solvers, or with errors noted.
 pub(super) fn modes(context: &mut Context<'_>) -> Option<ModesSettings> {
     let options = context.case.solver.modes?;
+    let bodies = &context.case.bodies;
     let is_solid = |body: &&Body| matches!(body.kind, BodyKind::Solid(_));
-    if let Some(body) = context.case.bodies.iter().find(|body| !is_solid(body)) {
+    let is_beams =
+        |body: &&Body| matches!(&body.kind, BodyKind::Bonded(bonded) if bonded.law == BondLawKind::CohesiveBeam);
+    let bonded = bodies.first().is_some_and(|body| is_beams(&body));
+    if let Some(body) = bodies.iter().find(|body| if bonded { !is_beams(body) } else { !is_solid(body) }) {
         let found = format!("= \"modes\" with body \"{}\"", body.name.value);
-        let expected = "solid bodies: contact, particles and bonds have no part in natural vibrations";
+        let expected = "solid bodies, or bonded bodies of cohesive beams, by themselves: contact and ties have no part in natural vibrations";
         context.error(&place_of_solver(context), found, expected);
         return None;
     }

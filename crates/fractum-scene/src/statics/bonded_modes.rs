@@ -11,7 +11,8 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::LinearSolver;
 use super::faer::FaerFactor;
-use super::modes::{Found, ModesSettings, TOLERANCES, find_with_stiffness, frequency, size};
+use super::settings::ModesSettings;
+use super::slowest::{Found, TOLERANCES, find_with_stiffness, frequency, size};
 use crate::bonded::Bonded;
 use crate::modes::{Mode, Modes};
 

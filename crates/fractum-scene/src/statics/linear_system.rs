@@ -3,8 +3,8 @@ use fractum_math::Vec3;
 use fractum_sparse::{Pairs, Search, SparseError};
 
 use super::contact::Spring;
-use super::modes::Found;
 use super::settings::{LinearSolver, StaticSettings};
+use super::slowest::Found;
 use super::system::{LinearWork, System};
 use crate::scene::Scene;
 

@@ -58,3 +58,12 @@ pub struct StaticSettings {
     /// that it creeps to the next one instead of shooting past it.
     pub damping: Option<LocalDamping>,
 }
+
+/// How natural vibrations are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ModesSettings {
+    /// Number of vibrations, the slowest ones.
+    pub count: usize,
+    /// How linear systems are solved.
+    pub linear: LinearSolver,
+}
