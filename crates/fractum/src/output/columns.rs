@@ -10,7 +10,7 @@ use fractum_scene::statics::{Control, NoEquilibrium};
 /// How a run proceeds.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Course {
-    /// Whether a part of it is a path of equilibria.
+    /// Whether a part of it is a path of equilibria, or natural vibrations, whose frames are numbered one after the other.
     pub(crate) rests: bool,
     /// Whether the load factor may run back: rows and frames are then ordered by steps.
     pub(crate) turns_back: bool,
@@ -20,7 +20,7 @@ impl Course {
     /// That of the stages of a run.
     pub(crate) fn of<'a>(stages: impl Iterator<Item = &'a BuiltScene>) -> Self {
         stages.fold(Course::default(), |course, stage| Course {
-            rests: course.rests || stage.statics.is_some() || stage.bonded_statics.is_some(),
+            rests: course.rests || stage.statics.is_some() || stage.bonded_statics.is_some() || stage.modes.is_some(),
             turns_back: course.turns_back
                 || stage.bonded_statics.is_some()
                 || stage.statics.as_ref().is_some_and(|statics| statics.control != Control::Time),
