@@ -129,6 +129,7 @@ fn documented_defaults_are_the_defaults() {
     // Where a key may stand in the two samples.
     let at_rest = SMALL.replace("end = 1e-3", STATIC);
     let breaking = SMALL.replace("[[bodies]]", "[materials.steel.fracture]\ntensile_strength = 1e9\n[[bodies]]");
+    let vibrating = SMALL.replace("end = 1e-3", "kind = \"modes\"");
     let products = [SMALL, PRODUCTS].concat();
     let perfect = text.replace("covolume = \"8e-4 m^3/kg\"\n", "").replace("noble-abel", "perfect-gas");
     let samples = [
@@ -146,6 +147,7 @@ fn documented_defaults_are_the_defaults() {
         (SMALL, "steel", "bodies[0]", ""),
         (BONDED_AT_REST, "steel", "bodies[0]", ""),
         (breaking.as_str(), "steel", "bodies[0]", ""),
+        (vibrating.as_str(), "steel", "bodies[0]", ""),
     ];
     let mut untried = Vec::new();
     for key in keys() {
@@ -165,14 +167,15 @@ fn documented_defaults_are_the_defaults() {
                 .replace("loads[].in_cracks", "loads[2].in_cracks")
                 .replace("gas.holes[]", "gas.holes[0]")
                 .replace("probes[].reaction.about", "probes[15].reaction.about")
-                .replace("probes[].moment", "probes[37].moment")
+                .replace("probes[].moment", "probes[38].moment")
                 .replace("probes[].displacement.about", "probes[16].displacement.about")
                 .replace("probes[].velocity.about", "probes[17].velocity.about")
                 .replace("probes[].contact_force.about", "probes[20].contact_force.about")
                 .replace("probes[].stress.about", "probes[18].stress.about")
-                .replace("probes[].strain", "probes[32].strain")
-                .replace("probes[].temperature", "probes[34].temperature")
+                .replace("probes[].strain", "probes[33].strain")
+                .replace("probes[].temperature", "probes[35].temperature")
                 .replace("probes[].load.about", "probes[22].load.about")
+                .replace("probes[].mode", "probes[32].mode")
                 .replace("probes[].radial_cracks", "probes[29].radial_cracks")
                 .replace("probes[].damaged", "probes[30].damaged")
                 .replace("output.ppv[]", "output.ppv[0]")
