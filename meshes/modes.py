@@ -3,7 +3,7 @@
 - `modes/ring.msh`: plane ring of radii 95 and 105 mm, 8 layers of 360 cells, each cut by one of its diagonals in turn;
 - `modes/ball.msh`: eighth of a ball of radius 0.1 m, 12 cells along its edges, each cut into six tetrahedra; `x`, `y` and `z` are its planes
   of symmetry;
-- `modes/plate.msh`: square plate of 1 x 1 x 0.1 m, 20 x 20 x 4 cells of six tetrahedra; `x_sides` and `y_sides` are its sides across x and y.
+- `modes/plate.msh`: square plate of 1 x 1 x 0.1 m, 24 x 24 x 6 cells of six tetrahedra; `x_sides` and `y_sides` are its sides across x and y.
 """
 
 from itertools import permutations, product
@@ -108,7 +108,7 @@ def ball(radius=0.1, n=12):
     write("ball.msh", points, "ball", tetrahedra, sides)
 
 
-def plate(size=(1.0, 1.0, 0.1), cells=(20, 20, 4)):
+def plate(size=(1.0, 1.0, 0.1), cells=(24, 24, 6)):
     def node(i, j, k):
         return 1 + i + (cells[0] + 1) * (j + (cells[1] + 1) * k)
 
