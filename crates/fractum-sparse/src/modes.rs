@@ -61,6 +61,8 @@ pub struct Pairs<const B: usize> {
 
 /// Vectors of the basis beyond the wanted ones after a restart: a few, and a part of these.
 const GUARDS: [usize; 2] = [4, 4];
+/// Pairs beyond the wanted ones by whose residuals the basis grows too: those that may yet come among these.
+const BEYOND: usize = 2;
 /// Vectors of the basis over those that a restart leaves.
 const GROWTH: usize = 4;
 /// Part of the square of a vector that is left beside the basis below which it brings nothing new.
@@ -131,7 +133,7 @@ pub fn lowest_pairs<const B: usize>(
             }
             return found;
         }
-        let open: Vec<usize> = (0..within).filter(|&pair| !is_good(pair)).collect();
+        let open: Vec<usize> = (0..within.min(count + BEYOND)).filter(|&pair| !is_good(pair)).collect();
         let mut picked = DMatrix::zeros(within, open.len());
         open.iter().enumerate().for_each(|(column, &pair)| picked[(pair, column)] = 1.0 / sizes[pair]);
         let mut next = residual.combined(&picked).bundle(|row| f64::from(u8::from(mass[row] > 0.0)));
