@@ -50,12 +50,12 @@ impl Skin {
 }
 
 /// Pictures of the last instant: none.
-pub(crate) fn draw(_: &Scene, _: Skin, _: &Path, _: bool, _: &mut Group) -> Vec<PictureNote> {
+pub(crate) fn draw(_: &Scene, _: Skin, _: &Path, _: &str, _: &mut Group) -> Vec<PictureNote> {
     Vec::new()
 }
 
 /// Pictures over time: none.
-pub(crate) fn strip(_: &Path, _: Option<f64>, _: bool, _: &mut Group) -> Vec<PictureNote> {
+pub(crate) fn strip(_: &Path, _: Option<f64>, _: &dyn Fn(f64) -> String, _: &mut Group) -> Vec<PictureNote> {
     Vec::new()
 }
 
