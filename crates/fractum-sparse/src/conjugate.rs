@@ -68,37 +68,13 @@ fn dot<const B: usize>(a: &[[f64; B]], b: &[[f64; B]]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
-    use fractum_math::Ragged;
-
     use super::*;
-    use crate::block::Pattern;
     use crate::cholesky::Factor;
     use crate::coarse::Motions;
 
-    /// A square net of n × n nodes with springs along its lines and diagonals, its left side held.
+    /// A net whose left side is held.
     fn net(n: u32) -> (BlockMatrix<2>, Vec<[f64; 3]>, Vec<u8>) {
-        let at = |i: u32, j: u32| i + n * j;
-        let places: Vec<[f64; 3]> = (0..n * n).map(|k| [f64::from(k % n), f64::from(k / n), 0.0]).collect();
-        let mut springs = Vec::new();
-        for j in 0..n {
-            for i in 0..n {
-                let ends = [(i + 1, j), (i, j + 1), (i + 1, j + 1), (i + 1, j.wrapping_sub(1))];
-                springs.extend(ends.iter().filter(|(a, b)| *a < n && *b < n).map(|&(a, b)| [at(i, j), at(a, b)]));
-            }
-        }
-        let pattern = Arc::new(Pattern::from_cliques(places.len(), &Ragged::from_rows(&springs)));
-        let mut k = BlockMatrix::<2>::zeros(pattern);
-        for [i, j] in springs {
-            let (p, q) = (places[i as usize], places[j as usize]);
-            let (x, y) = (q[0] - p[0], q[1] - p[1]);
-            let along = [[x * x, x * y], [x * y, y * y]];
-            let against = along.map(|row| row.map(|v| -v));
-            for (a, b, block) in [(i, i, along), (j, j, along), (i, j, against), (j, i, against)] {
-                k.add(a as usize, b as usize, block);
-            }
-        }
+        let (mut k, places) = crate::net::net(n);
         let held: Vec<u8> = places.iter().map(|p| if p[0] == 0.0 { 3 } else { 0 }).collect();
         k.hold(&held, 1.0);
         (k, places, held)

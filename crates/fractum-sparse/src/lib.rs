@@ -39,6 +39,8 @@ mod conjugate;
 mod dense;
 mod incomplete;
 mod modes;
+#[cfg(test)]
+mod net;
 mod ordering;
 mod supernodes;
 

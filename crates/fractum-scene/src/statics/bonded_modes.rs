@@ -7,12 +7,12 @@ use fractum_math::{Mat3, Ragged, Vec3, connected};
 use fractum_sparse::{
     BlockMatrix, Factor, Inverse, Pattern, Preconditioner, Search, SparseError, Vibration, lowest_pairs,
 };
-use nalgebra::{Matrix6, Vector6};
 
 use super::LinearSolver;
 use super::faer::FaerFactor;
 use super::settings::ModesSettings;
 use super::slowest::{Found, TOLERANCES, find_with_stiffness, frequency, size};
+use super::support_check::Piece;
 use crate::bonded::Bonded;
 use crate::modes::{Mode, Modes};
 
@@ -21,8 +21,6 @@ type Shape = Vec<[f64; 6]>;
 
 /// Particles up to which a factorisation is cheaper than an iteration without a coarse space.
 const DIRECT: usize = 20_000;
-/// Eigenvalue of the supports of a piece, over its size, below which a rigid motion counts as free.
-const FREE: f64 = 1e-9;
 
 /// Finds the slowest vibrations of bodies of beams.
 ///
@@ -148,26 +146,18 @@ fn rigid_motions(bonded: &Bonded, beams: &[(u32, u32, BeamSection)]) -> (usize, 
         let centre = members.iter().map(|&i| reference[i]).sum::<Vec3>() / members.len() as f64;
         let reach = |&i: &usize| (reference[i] - centre).norm() + particles.radius[i];
         let size = members.iter().map(reach).fold(f64::MIN_POSITIVE, f64::max);
-        // Motion of a particle in a rigid motion: translation, and rotation times the size of the piece.
-        let motion = |i: usize, of: &Vector6<f64>| -> [f64; 6] {
-            let turn = Vec3::new(of[3], of[4], of[5]) / size;
-            let shift = Vec3::new(of[0], of[1], of[2]) + turn.cross(&(reference[i] - centre));
-            [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z]
-        };
-        let mut gram = Matrix6::<f64>::zeros();
+        let mut piece = Piece::free(centre, size);
         for &i in members {
-            for d in (0..6).filter(|d| particles.held[i] >> d & 1 == 1) {
-                let units = Matrix6::<f64>::identity();
-                let scale = if d < 3 { 1.0 } else { size };
-                let row = Vector6::from_fn(|m, _| scale * motion(i, &units.column(m).into_owned())[d]);
-                gram += row * row.transpose();
-            }
+            let held = |d: &usize| particles.held[i] >> d & 1 == 1;
+            (0..3).filter(held).for_each(|axis| piece.hold(reference[i], Vec3::ith(axis, 1.0)));
+            (0..3).filter(|axis| held(&(axis + 3))).for_each(|axis| piece.hold_turn(axis));
         }
-        let eigen = gram.symmetric_eigen();
-        for free in (0..6).filter(|&m| eigen.eigenvalues[m] < FREE) {
-            let of = eigen.eigenvectors.column(free).into_owned();
+        for motion in piece.free_motions() {
             let mut shape = vec![[0.0; 6]; particles.len()];
-            members.iter().for_each(|&i| shape[i] = motion(i, &of));
+            for &i in members {
+                let (shift, turn) = (piece.velocity(&motion, reference[i]), piece.spin(&motion));
+                shape[i] = [shift.x, shift.y, shift.z, turn.x, turn.y, turn.z];
+            }
             motions.push(shape);
         }
     }

@@ -6,6 +6,7 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::Stiffness;
+use super::slowest::size;
 use crate::clock::Frequencies;
 use crate::error::StepError;
 use crate::ledger::EnergyKind;
@@ -146,11 +147,8 @@ fn period_as_it_is(scene: &mut Scene, time: f64) -> f64 {
         stiffness.first_period(scene, time)
     });
     found.ok().filter(|period| period.is_finite()).unwrap_or_else(|| {
-        let points = &scene.solid.reference;
-        let low = points.iter().fold(Vec3::repeat(f64::INFINITY), |low, p| low.inf(p));
-        let high = points.iter().fold(Vec3::repeat(f64::NEG_INFINITY), |high, p| high.sup(p));
         let speed = |body| scene.solid.body(body).elastic.p_wave_speed();
         let slowest = (0..scene.solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
-        CROSSINGS * (high - low).norm() / slowest
+        CROSSINGS * size(&scene.solid.reference) / slowest
     })
 }

@@ -69,21 +69,21 @@ pub(super) fn rigid_motions(solid: &Solid, held: &[u8]) -> (usize, Vec<Vec<Vec3>
     let count = pieces.len();
     let mut motions = Vec::new();
     for (_, nodes) in pieces {
-        let mut piece = Piece::new(solid, &nodes, held);
-        while let Some(motion) = piece.free_motion() {
+        let piece = Piece::new(solid, &nodes, held);
+        for motion in piece.free_motions() {
             let mut velocities = vec![Vec3::zeros(); solid.reference.len()];
             for &node in &nodes {
                 velocities[node as usize] = piece.velocity(&motion, solid.reference[node as usize]);
             }
             motions.push(velocities);
-            piece.gram += motion * motion.transpose();
         }
     }
     (count, motions)
 }
 
 /// The supports of a connected piece as a quadratic form over its six rigid motions.
-struct Piece {
+#[derive(Clone, Copy)]
+pub(super) struct Piece {
     centre: Vec3,
     size: f64,
     gram: Matrix6<f64>,
@@ -91,11 +91,18 @@ struct Piece {
 }
 
 impl Piece {
+    /// A piece in space that nothing holds.
+    ///
+    /// - `size`: distance by which rotations are measured [m], > 0
+    pub(super) fn free(centre: Vec3, size: f64) -> Self {
+        Piece { centre, size, gram: Matrix6::zeros(), plane: false }
+    }
+
     fn new(solid: &Solid, nodes: &[u32], held: &[u8]) -> Self {
         let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;
         let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
         let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let mut piece = Piece { centre, size, gram: Matrix6::zeros(), plane: solid.is_plane() };
+        let mut piece = Piece { plane: solid.is_plane(), ..Piece::free(centre, size) };
         for &node in nodes {
             let bits = held.get(node as usize).copied().unwrap_or(0);
             let axes = (0..3).filter(|axis| bits & (1 << axis) != 0);
@@ -105,11 +112,26 @@ impl Piece {
     }
 
     /// Prevents motion of a place along a direction.
-    fn hold(&mut self, place: Vec3, along: Vec3) {
+    pub(super) fn hold(&mut self, place: Vec3, along: Vec3) {
         let x = (place - self.centre) / self.size;
         let turn = |about: Vec3| about.cross(&x).dot(&along);
         let row = Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()));
         self.gram += row * row.transpose();
+    }
+
+    /// Prevents rotation about an axis.
+    pub(super) fn hold_turn(&mut self, axis: usize) {
+        self.gram[(3 + axis, 3 + axis)] += 1.0;
+    }
+
+    /// All rigid motions that nothing prevents, at right angles to each other.
+    pub(super) fn free_motions(mut self) -> Vec<Vector6<f64>> {
+        let mut found = Vec::new();
+        while let Some(motion) = self.free_motion() {
+            self.gram += motion * motion.transpose();
+            found.push(motion);
+        }
+        found
     }
 
     /// A rigid motion that nothing prevents: translation, and rotation times the size of the piece.
@@ -129,9 +151,14 @@ impl Piece {
     }
 
     /// Velocity of a place in a rigid motion.
-    fn velocity(&self, motion: &Vector6<f64>, place: Vec3) -> Vec3 {
+    pub(super) fn velocity(&self, motion: &Vector6<f64>, place: Vec3) -> Vec3 {
         let turn = Vec3::new(motion[3], motion[4], motion[5]);
         Vec3::new(motion[0], motion[1], motion[2]) + turn.cross(&((place - self.centre) / self.size))
+    }
+
+    /// Angular velocity in a rigid motion.
+    pub(super) fn spin(&self, motion: &Vector6<f64>) -> Vec3 {
+        Vec3::new(motion[3], motion[4], motion[5]) / self.size
     }
 }
 
