@@ -158,23 +158,26 @@ fn pieces_and_mechanisms_are_counted() {
 fn rod(count: usize, spacing: f64, clamped: bool) -> Scene {
     let radius = 0.5 * spacing;
     let position: Vec<Vec3> = (0..=count).map(|i| Vec3::x() * (spacing * i as f64)).collect();
-    let pairs = (0..count as u32).map(|i| [i, i + 1]).collect();
     let mut particles = Particles::at_rest(position, vec![radius; count + 1], RHO * (count + 1) as f64).unwrap();
     if clamped {
         particles.held[0] = 0b11_1111;
     }
-    let part = BondedPart {
+    let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
+    scene(solid, Vec::new()).with_bonded(Bonded::new(vec![part(particles, count)]).unwrap())
+}
+
+/// A rod of particles, the first of which are bonded one to the next by so many beams.
+fn part(particles: Particles, bonds: usize) -> BondedPart {
+    BondedPart {
         name: "rod".into(),
         particles,
-        pairs,
+        pairs: (0..bonds as u32).map(|i| [i, i + 1]).collect(),
         law: SECTION.into(),
         shares: Vec::new(),
         density: 1000.0,
         fraction: 0.64,
         fracture: None,
-    };
-    let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
-    scene(solid, Vec::new()).with_bonded(Bonded::new(vec![part]).unwrap())
+    }
 }
 
 /// Mass of a particle of rods [kg], and the section of their beams.
@@ -217,4 +220,27 @@ fn a_clamped_rod_of_particles_stretches_twists_and_bends_as_chains_and_beams_do(
         / (length * length)
         / (2.0 * std::f64::consts::PI);
     assert!((found.modes[0].frequency / free - 1.0).abs() < 0.06, "{} against {free}", found.modes[0].frequency);
+}
+
+#[test]
+fn a_particle_without_bonds_does_not_vibrate() {
+    for clamped in [true, false] {
+        let alone = modes(&rod(20, 0.05, clamped), 8, LinearSolver::Direct);
+        for linear in SOLVERS {
+            let mut scene = rod(20, 0.05, clamped);
+            let place = Vec3::new(0.0, 1.0, 0.0);
+            let particles = &scene.bonded.particles;
+            let position = [&particles.position[..], &[place]].concat();
+            let mass = particles.mass[0] * position.len() as f64;
+            let mut all = Particles::at_rest(position, vec![0.025; 22], mass).unwrap();
+            all.held[..21].copy_from_slice(&particles.held);
+            scene = scene.with_bonded(Bonded::new(vec![part(all, 20)]).unwrap());
+            let found = modes(&scene, 8, linear);
+            assert!(found.converged, "{linear:?}");
+            assert_eq!((found.loose, found.pieces, found.rigid_motions), (1, 1, alone.rigid_motions), "{linear:?}");
+            for (mode, exact) in found.modes.iter().zip(&alone.modes) {
+                assert!((mode.frequency / exact.frequency - 1.0).abs() < 1e-8, "{linear:?}: {mode:?}");
+            }
+        }
+    }
 }

@@ -29,8 +29,10 @@ impl Mode {
 pub struct Modes {
     /// The vibrations, the slowest first.
     pub modes: Vec<Mode>,
-    /// Connected pieces.
+    /// Connected pieces; a particle without bonds is none.
     pub pieces: usize,
+    /// Particles without bonds, which do not vibrate.
+    pub loose: usize,
     /// Rigid motions that nothing prevents.
     pub rigid_motions: usize,
     /// Motions without stiffness beside them.

@@ -69,6 +69,8 @@ const GROWTH: usize = 4;
 const NOTHING_NEW: f64 = 1e-22;
 /// Eigenvalue of the Gram matrix of unit vectors below which a sum of them is noise.
 const PARALLEL: f64 = 1e-10;
+/// Residual that counts as found at most, where rounding lets it fall no further.
+const COARSE: f64 = 1e-3;
 /// Roundings of the largest eigenvalue that a residual consists of at least.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
@@ -125,12 +127,12 @@ pub fn lowest_pairs<const B: usize>(
         let wanted = count.min(within);
         let all_good = (0..wanted).all(is_good);
         if all_good || new.count() == 0 || found.extensions >= search.most || (search.stop)() {
-            found.converged = all_good && wanted == count;
             for pair in 0..wanted {
                 found.values.push(values[pair]);
                 found.vectors.push(with_sign(vectors.vector(pair)));
                 found.residuals.push(sizes[pair] / values[pair].abs().max(search.small));
             }
+            found.converged = all_good && wanted == count && found.residuals.iter().all(|residual| *residual < COARSE);
             return found;
         }
         let open: Vec<usize> = (0..within.min(count + BEYOND)).filter(|&pair| !is_good(pair)).collect();

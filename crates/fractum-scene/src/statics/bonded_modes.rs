@@ -30,7 +30,9 @@ pub(super) fn find(bonded: &Bonded, settings: ModesSettings, stop: fn() -> bool)
     let particles = &bonded.particles;
     let beams: Vec<(u32, u32, BeamSection)> = beams(bonded);
     let stiffness = stiffness(bonded, &beams);
-    let mass: Vec<[f64; 6]> = (0..particles.len()).map(|i| free_mass(particles, i)).collect();
+    let is_loose = |i: usize| stiffness.pattern().row(i).len() == 1;
+    let of = |i: usize| if is_loose(i) { [0.0; 6] } else { free_mass(particles, i) };
+    let mass: Vec<[f64; 6]> = (0..particles.len()).map(of).collect();
     let (pieces, rigid) = rigid_motions(bonded, &beams);
     let rigid_motions = rigid.len();
     let direct = match settings.linear {
@@ -62,6 +64,7 @@ pub(super) fn find(bonded: &Bonded, settings: ModesSettings, stop: fn() -> bool)
     Ok(Modes {
         modes: modes.collect(),
         pieces,
+        loose: (0..particles.len()).filter(|&i| is_loose(i)).count(),
         rigid_motions,
         mechanisms,
         free_mass: total(&|i, axis| mass[i][axis]),
@@ -134,13 +137,13 @@ fn beam(way: Vec3, section: BeamSection) -> [[[f64; 6]; 6]; 2] {
     [blocks(shift, -turn, turn, bend * 2.0 + twist), blocks(-shift, -turn, -turn, bend - twist)]
 }
 
-/// Connected pieces with their rigid motions that nothing prevents.
+/// Connected pieces of more than one particle, with their rigid motions that nothing prevents.
 fn rigid_motions(bonded: &Bonded, beams: &[(u32, u32, BeamSection)]) -> (usize, Vec<Shape>) {
     let (particles, reference) = (&bonded.particles, &bonded.reference);
     let part = connected(particles.len(), beams.iter().map(|&(i, j, _)| [i, j]));
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); particles.len()];
     part.iter().enumerate().for_each(|(i, &part)| members[part as usize].push(i));
-    members.retain(|members| !members.is_empty());
+    members.retain(|members| members.len() > 1);
     let mut motions = Vec::new();
     for members in &members {
         let centre = members.iter().map(|&i| reference[i]).sum::<Vec3>() / members.len() as f64;

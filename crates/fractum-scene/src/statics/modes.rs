@@ -59,6 +59,7 @@ pub fn find_modes(scene: &Scene, settings: ModesSettings, stop: fn() -> bool) ->
     Ok(Modes {
         modes: modes.collect(),
         pieces,
+        loose: 0,
         rigid_motions,
         mechanisms,
         free_mass: along(&|node, _| solid.mass[node]),

@@ -18,11 +18,21 @@ impl Simulation {
 /// What is doubtful about a body whose vibrations these are.
 fn doubts(found: &Modes) -> Vec<Warning> {
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
+    let is_bonded = found.modes.iter().any(|mode| !mode.turns.is_empty());
     let mut warnings = Vec::new();
+    if found.loose > 0 {
+        let text = format!("{} without bonds, left out of the vibrations", counted(found.loose, "particle"));
+        let remedy = "choose a higher coordination where they should hold on to the body";
+        warnings.push(Warning::new(Code::InPieces, "", text).remedy(remedy));
+    }
     if found.pieces > 1 {
-        let text = format!("the solids are {} pieces that vibrate each by itself", found.pieces);
-        let remedy =
-            "where they should be one, let them share their nodes: mesh them together, or join them with mesh.join";
+        let what = if is_bonded { "bonded bodies" } else { "solids" };
+        let text = format!("the {what} are {} pieces that vibrate each by itself", found.pieces);
+        let remedy = if is_bonded {
+            "where they should be one, choose a higher coordination"
+        } else {
+            "where they should be one, let them share their nodes: mesh them together, or join them with mesh.join"
+        };
         warnings.push(Warning::new(Code::InPieces, "", text).remedy(remedy));
     }
     if found.rigid_motions > 0 {
