@@ -44,3 +44,10 @@ pub struct Modes {
     /// Whether all residuals are small enough.
     pub converged: bool,
 }
+
+impl Modes {
+    /// Shares of the free mass that a motion of the ground along each axis sets in motion in a vibration [-]; 0 where none is free.
+    pub fn mass_share(&self, mode: &Mode) -> Vec3 {
+        mode.effective_mass().zip_map(&self.free_mass, |own, all| if all > 0.0 { own / all } else { 0.0 })
+    }
+}

@@ -1,8 +1,7 @@
 //! A natural vibration: its frequency [1/s], or the share of the mass that it moves along an axis.
 
-use fractum_math::Vec3;
 use fractum_scene::statics::modes_of;
-use fractum_scene::{Mode, Probe, ProbedScene};
+use fractum_scene::{Probe, ProbedScene};
 
 use super::Measure;
 use super::scenery::Scenery;
@@ -84,15 +83,11 @@ impl Probe for NaturalVibration {
         let Some((modes, mode)) = modes_of(probed.scene).and_then(|all| Some((all, all.modes.get(self.index)?))) else {
             return f64::NAN;
         };
-        let share = |mode: &Mode, axis: usize| {
-            let shares: Vec3 = mode.effective_mass().component_div(&modes.free_mass);
-            if modes.free_mass[axis] > 0.0 { shares[axis] } else { 0.0 }
-        };
         match self.of {
             OfMode::Frequency => mode.frequency,
-            OfMode::MassX => share(mode, 0),
-            OfMode::MassY => share(mode, 1),
-            OfMode::MassZ => share(mode, 2),
+            OfMode::MassX => modes.mass_share(mode).x,
+            OfMode::MassY => modes.mass_share(mode).y,
+            OfMode::MassZ => modes.mass_share(mode).z,
         }
     }
 }

@@ -6,16 +6,11 @@ use fractum_scene::{Mode, Modes};
 
 /// As `summary.json` has them.
 pub(crate) fn of_summary(found: &Modes) -> NaturalVibrations {
-    let of = |mode: &Mode| {
-        let effective = mode.effective_mass();
-        let share =
-            |axis: usize| if found.free_mass[axis] > 0.0 { effective[axis] / found.free_mass[axis] } else { 0.0 };
-        NaturalVibration {
-            frequency: mode.frequency,
-            participation: mode.participation.into(),
-            mass_share: std::array::from_fn(share),
-            residual: mode.residual,
-        }
+    let of = |mode: &Mode| NaturalVibration {
+        frequency: mode.frequency,
+        participation: mode.participation.into(),
+        mass_share: found.mass_share(mode).into(),
+        residual: mode.residual,
     };
     NaturalVibrations {
         pieces: found.pieces as u64,
