@@ -7,6 +7,7 @@ use fractum_kernels::damage::{EdgeDamage, Seen, Taken};
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
 use crate::body::{Formulation, Kinematics};
+use crate::cells::block::Cells;
 use crate::motion::phase_damage::{phase_values, raise_phases, trial_phases};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
@@ -32,6 +33,8 @@ pub struct SecantCell<'a> {
     pub lambda: f64,
     /// μ V (1 - d) [N m].
     pub mu: f64,
+    /// Stress of its thermal strain, the same in all directions, times V (1 - d) [N m]; 0 where nothing expands.
+    pub thermal: f64,
 }
 
 /// An edge that may be damaged.
@@ -112,26 +115,34 @@ impl Solid {
                     }
                     gradients.push(*g);
                 }
-                work(SecantCell {
-                    first_pair,
-                    nodes: &nodes,
-                    gradients: &gradients,
-                    lambda: hooke.lambda * left,
-                    mu: hooke.mu * left,
-                });
+                let (lambda, mu) = (hooke.lambda * left, hooke.mu * left);
+                let thermal =
+                    cells.thermal.as_ref().map_or(0.0, |own| own.now(cell) * (lambda * own.unit.trace() + 2.0 * mu));
+                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lambda, mu, thermal });
             }
         }
     }
 
-    /// Forces that hold the displacement `field` against the secant stiffness, K u [N].
+    /// Forces that hold the displacements `field` against the secant stiffness and thermal strains [N].
     pub fn secant_force(&self, damage: &CellDamage, field: &[Vec3], force: &mut [Vec3]) {
+        self.add_up(damage, field, 1.0, force);
+    }
+
+    /// Forces that change with the displacements by `change`, K u [N].
+    pub fn secant_change(&self, damage: &CellDamage, change: &[Vec3], force: &mut [Vec3]) {
+        self.add_up(damage, change, 0.0, force);
+    }
+
+    /// - `share`: part of the thermal stresses that counts
+    fn add_up(&self, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
         force.fill(Vec3::zeros());
         self.for_each_cell(damage, |cell| {
             let mut h = Mat3::zeros();
             for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
                 h += field[node as usize] * Vec3::from(*g).transpose();
             }
-            let stress = (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace());
+            let stress =
+                (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace() - share * cell.thermal);
             for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
                 force[node as usize] += stress * Vec3::from(*g);
             }
@@ -172,12 +183,22 @@ impl Solid {
         points
     }
 
-    /// Effective stress of every edge that may be damaged under a displacement field [Pa]; linear in it.
+    /// Effective stress of every edge that may be damaged under displacements [Pa].
     pub fn effective_stresses(&self, field: &[Vec3], stresses: &mut Vec<Sym3>) {
+        self.stresses(field, Cells::elastic_strain, stresses);
+    }
+
+    /// What a change of the displacements adds to [`Solid::effective_stresses`] [Pa]; linear in it.
+    pub fn effective_stress_changes(&self, change: &[Vec3], stresses: &mut Vec<Sym3>) {
+        self.stresses(change, |_, _, strain| strain, stresses);
+    }
+
+    /// - `elastic`: the strain that stress belongs to, of a cell with a strain
+    fn stresses(&self, field: &[Vec3], elastic: impl Fn(&Cells, usize, Sym3) -> Sym3, stresses: &mut Vec<Sym3>) {
         stresses.clear();
         let stress = |block: &Block, cell: usize| {
             let strain = Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
-            self.bodies[block.body].hooke.stress(strain)
+            self.bodies[block.body].hooke.stress(elastic(&block.cells, cell, strain))
         };
         for block in self.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
             stresses.extend((0..block.cells.len()).map(|cell| stress(block, cell)));
@@ -297,9 +318,9 @@ impl Solid {
                 if seen.stress <= field.onset(cell) {
                     continue;
                 }
-                let strain = |u: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| u[node]));
+                let ends = cells.elastic_ends(cell, [before, after]);
                 let growth = field.load(cell, seen, 0.0);
-                let taken = Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before)));
+                let taken = Taken::straight(0.5 * hooke.stress(ends[1]).dot(ends[0]));
                 *dissipated += taken.by(growth) * cells.volume[cell];
             }
         }

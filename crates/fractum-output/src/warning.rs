@@ -123,6 +123,8 @@ codes! {
     ImpactLoss = "impact-loss",
     /// Springs of contact hold a visible share of the elastic energy.
     SoftContact = "soft-contact",
+    /// Changes of the time step, or of strains, brought or took a visible share of the energy.
+    ChangeOfStep = "change-of-step",
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.

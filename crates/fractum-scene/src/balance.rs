@@ -7,10 +7,13 @@ use crate::error::StepError;
 use crate::ledger::EnergyKind;
 use crate::ranks::gather_all;
 use crate::scene::Scene;
+use crate::watch::{Notice, Site};
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
 /// stable step reaches 10.
 const UNSTABLE_RATIO: f64 = 20.0;
+/// Share of the energy that changes of the step may bring or take before a word is said.
+const VISIBLE_CHANGE: f64 = 5e-3;
 
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
 const IN_SITU_ROUND_OFF: f64 = 1e-9;
@@ -83,6 +86,12 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     let ratio = (scene.ledger[EnergyKind::Elastic] - scene.ledger.in_situ) / scene.ledger.scale;
     if ratio > UNSTABLE_RATIO {
         return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: culprit(scene) });
+    }
+    // The ledger knows this entry, and so closes; it is an error of the run all the same. In the first half little may be in play yet.
+    let late = scene.clock.time > 0.5 * scene.settings.time_step.end;
+    let share = (scene.books.time_step / scene.ledger.scale).abs();
+    if late && scene.ledger.scale > 0.0 && share > VISIBLE_CHANGE {
+        scene.note(Notice::ChangeOfStep, Site::Scene, share);
     }
     let allowed = scene.settings.balance_stop;
     if relative > allowed {

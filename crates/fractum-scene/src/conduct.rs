@@ -80,6 +80,27 @@ pub(crate) fn conduct(scene: &mut Scene, dt: f64, passed: &mut impl FnMut(Phase)
     Ok(work)
 }
 
+/// Conducts heat to a time that an equilibrium is tried at, and expands bodies by the temperatures there. The time may come back, as long as
+/// no equilibrium was found.
+pub(crate) fn warm_to(scene: &mut Scene, target: f64) -> Result<(), StepError> {
+    let (step, time) = (scene.clock.step, scene.clock.time);
+    let Scene { optional, solid, bonded, .. } = scene;
+    let Some(heat) = &mut optional.heat else { return Ok(()) };
+    heat.warm_to([time, target], solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })
+}
+
+/// Takes the expansion of an equilibrium as done; returns half of its work, at the stresses of the one before [J].
+pub(crate) fn settle_expansion(scene: &mut Scene) -> f64 {
+    let Scene { optional, solid, bonded, .. } = scene;
+    optional.heat.as_mut().map_or(0.0, |heat| heat.settle_expansion(solid, bonded))
+}
+
+/// The other half, at the stresses of the equilibrium [J].
+pub(crate) fn finish_settled_expansion(scene: &mut Scene) -> f64 {
+    let Scene { optional, solid, bonded, .. } = scene;
+    optional.heat.as_mut().map_or(0.0, |heat| heat.finish_settled_expansion(solid, bonded))
+}
+
 /// Nothing conducts through elements that have left.
 pub(crate) fn heat_loses_elements(scene: &mut Scene) {
     if let Some(heat) = &mut scene.optional.heat {

@@ -281,6 +281,9 @@ fn add_contact_forces(scene: &mut Scene, dt: f64, mut work: Work) -> Work {
 fn change_solids(scene: &mut Scene, dt: f64) -> StepReport {
     let mut turning = Vec::new();
     // What small strains had found beyond was never put in.
+    if scene.clock.begins_motion() {
+        scene.books.time_step += motion::let_spin(&mut scene.solid, scene.settings.time_step.end, dt, &mut turning);
+    }
     scene.books.time_step += motion::let_turn(&mut scene.solid, scene.clock.step, dt, &mut turning);
     StepReport { turning, ..release_cut_elements(scene, dt) }
 }

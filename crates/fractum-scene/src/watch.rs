@@ -26,10 +26,12 @@ pub enum Notice {
     Crushed,
     /// Springs of contact give way beside the solids that they press on, and hold a visible share of the elastic energy [-].
     Springs,
+    /// Changes of the time step, or of the strains of a body that begins to turn, have brought or taken a visible share of the energy [-].
+    ChangeOfStep,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::Springs as usize + 1;
+    const COUNT: usize = Notice::ChangeOfStep as usize + 1;
 }
 
 /// Where something was noticed.

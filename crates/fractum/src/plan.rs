@@ -346,7 +346,9 @@ impl Plan {
     fn describe_statics(&mut self, scene: &Scene, settings: &StaticSettings) {
         let plane = scene.solid.body(0).shape == ElementKind::T3;
         let unknowns = scene.solid.reference.len() * if plane { 2 } else { 3 } - scene.supports().count();
+        let heats = scene.heat().is_some();
         let control = match &settings.control {
+            Control::Time if heats => "by steps of time".to_owned(),
             Control::Time => "by steps of the load parameter".to_owned(),
             Control::Path => "along the path of equilibrium, by steps of damage".to_owned(),
             Control::Opening(opening) => {
@@ -354,7 +356,7 @@ impl Plan {
                 format!("along the path of equilibrium, a crack opening by {step} per step, to {end}")
             }
         };
-        self.add("equilibrium", format!("{unknowns} unknowns, {control}, to {}", instant_text(settings.end, true)));
+        self.add("equilibrium", format!("{unknowns} unknowns, {control}, to {}", instant_text(settings.end, !heats)));
         if settings.linear == LinearSolver::Faer {
             self.add("", "linear systems by faer: results differ in their last digits from processor to processor");
         }

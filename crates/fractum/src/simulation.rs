@@ -311,7 +311,12 @@ impl Simulation {
 
     /// An instant in words.
     fn instant(&self, time: f64) -> String {
-        if self.solver.shows_modes() { mode_text(time) } else { at_instant(time, self.solver.rests()) }
+        if self.solver.shows_modes() { mode_text(time) } else { at_instant(time, self.counts_load()) }
+    }
+
+    /// Whether instants are load factors: at rest, where no heat goes on with time.
+    fn counts_load(&self) -> bool {
+        self.solver.rests() && self.scene.heat().is_none()
     }
 
     /// Waits until the pieces of frames that all processes write are on the disk.
@@ -403,7 +408,7 @@ impl Simulation {
             broken_bonds: counts.broken_bonds as u64,
             particles: counts.particles as u64,
             load: self.load().map(|(index, unit)| (self.load_and_peak(index), unit)),
-            at_rest: self.solver.rests(),
+            at_rest: self.counts_load(),
         }
     }
 

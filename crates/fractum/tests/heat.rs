@@ -3,9 +3,12 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use fractum_math::Vec3;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
+use fractum_mesh::{Group, Mesh, MshFormat};
 use fractum_output::frames::read_collection;
 
-use crate::common::{Workplace, history, resumed, run, summary};
+use crate::common::{Workplace, history, mesh_bytes, resumed, run, summary};
 
 /// A clamped bar of elements and a free bonded box, both heated by 15 K.
 const HOT: &str = r#"fractum = 1
@@ -217,7 +220,11 @@ fn what_heat_cannot_do_is_told_with_its_remedy() {
             "shares points",
         ),
         (hot.replace("area = \"0.09 m^2\"\n", ""), "particles have no surface of their own"),
-        (hot.replace("kind = \"heat\"", "kind = \"static\""), "is conducted in motion, or alone"),
+        (hot.replace("kind = \"heat\"", "kind = \"auto\""), "is conducted in motion, at rest, or alone"),
+        (
+            hot.replace("kind = \"heat\"", "kind = \"static\"\ncontrol = \"path\""),
+            "does not flow back along a path of equilibrium",
+        ),
         (hot.replace("\"400 K\"", "\"400 C\""), "400 C"),
     ] {
         let place = Workplace::new(&text);
@@ -275,4 +282,181 @@ fn of_conduction_alone_nothing_is_asked_and_nothing_said_that_moves() {
     let ended = Workplace::new(&moved).fractum(&["check", "case.toml", "--set", "solver.kind=heat"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!(ended.stdout.contains("warning: damping.mass has no effect"), "{}", ended.stdout);
+}
+
+/// A cantilever of two layers at rest, the upper one of another stiffness and expansion, cooled slowly.
+const LAYERS: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+
+[materials.low]
+density = "8000 kg/m^3"
+young_modulus = "200 GPa"
+poisson_ratio = NU
+[materials.low.thermal]
+conductivity = "50 W/(m K)"
+heat_capacity = "500 J/(kg K)"
+
+[materials.up]
+density = "8000 kg/m^3"
+young_modulus = "70 GPa"
+poisson_ratio = NU
+[materials.up.thermal]
+conductivity = "50 W/(m K)"
+heat_capacity = "500 J/(kg K)"
+expansion = "1e-5 1/K"
+
+[[bodies]]
+name = "low"
+kind = "solid"
+group = "body"
+material = "low"
+plane = "stress"
+thickness = "1 mm"
+formulation = "FORMULATION"
+
+[[bodies]]
+name = "up"
+kind = "solid"
+group = "up"
+material = "up"
+plane = "stress"
+thickness = "1 mm"
+formulation = "FORMULATION"
+
+[heat]
+initial_temperature = "300 K"
+scheme = "implicit"
+step = "10 s"
+
+[[heat.conditions]]
+where = "x > -1 m"
+temperature = { ramp = [["0 s", "300 K"], ["1000 s", "200 K"]] }
+
+[[supports]]
+where = "x < 0.01 mm"
+fix = "x"
+[[supports]]
+where = "x < 0.01 mm && y < 0.01 mm"
+fix = "y"
+
+[solver]
+kind = "static"
+end = "1000 s"
+step = "250 s"
+
+[[probes]]
+name = "tip"
+displacement = { where = "x > 59.99 mm", along = "y" }
+
+[output]
+checkpoint = { every = "500 s" }
+"#;
+
+/// Two layers of 2 mm, 60 mm long, that have nodes in common.
+fn layers() -> Mesh {
+    let mut mesh = structured_rectangle([120, 16], [0.06, 0.004], None);
+    let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
+    let is_up = |triangle: u32| {
+        mesh.triangles[triangle as usize].iter().map(|&node| mesh.nodes[node as usize].y).sum::<f64>() > 3.0 * 0.002
+    };
+    let (up, low) = mesh.groups[body].triangles.iter().partition(|&&triangle| is_up(triangle));
+    mesh.groups[body].triangles = low;
+    let above = Group { name: "up".into(), tag: 99, triangles: up, ..mesh.groups[body].clone() };
+    mesh.groups.push(above);
+    mesh
+}
+
+#[test]
+fn layers_at_rest_bend_as_timoshenko_says() {
+    let mesh = mesh_bytes(&layers(), MshFormat::V4_1Binary);
+    // Timoshenko (1925): curvature of layers of one thickness, n the ratio of their moduli.
+    let (n, height) = (200.0 / 70.0, 4e-3);
+    let curvature = 6.0 * 1e-5 * 100.0 * 4.0 / (height * (12.0 + (1.0 + n) * (1.0 + 1.0 / n)));
+    let tip = 0.5 * curvature * 0.06f64.powi(2);
+    for (nu, formulation) in [("0", "smoothed"), ("0.3", "smoothed"), ("0.45", "standard")] {
+        let case = LAYERS.replace("NU", nu).replace("FORMULATION", formulation);
+        let place = Workplace::with_mesh(&case, &mesh);
+        let one = run(&place, "one", "1");
+        let found = one["probes"]["tip"]["final"].as_f64().unwrap();
+        assert!((found / tip - 1.0).abs() < 0.01, "nu {nu}, {formulation}: {found} m of {tip} m");
+        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-9, "{}", one["energy"]);
+        assert_eq!(one["time"]["at_rest"], false, "instants are seconds, no load factors");
+    }
+    let place = Workplace::with_mesh(&LAYERS.replace("NU", "0.3").replace("FORMULATION", "smoothed"), &mesh);
+    let one = run(&place, "one", "1");
+    for other in [run(&place, "two", "2"), resumed(&place, "1")] {
+        assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]));
+    }
+}
+
+/// A bar that is held at both ends and cooled.
+const COOLED: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = NU
+[materials.stone.thermal]
+conductivity = "3 W/(m K)"
+heat_capacity = "800 J/(kg K)"
+expansion = "1e-5 1/K"
+[materials.stone.damage]
+tensile_strength = "3 MPa"
+fracture_energy = "100 J/m^2"
+
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "stone"
+strength_factor = "if(abs(x - 20 mm) < 4 mm, 0.9, 1)"
+
+[heat]
+initial_temperature = "300 K"
+scheme = "implicit"
+step = "1 s"
+
+[[heat.conditions]]
+where = "x > -1 m"
+temperature = { ramp = [["0 s", "300 K"], ["100 s", "ENDS"]] }
+
+[[supports]]
+group = "x-"
+fix = "x"
+[[supports]]
+group = "x+"
+fix = "x"
+[[supports]]
+where = "x < 1 um && hypot(y, z) < 1 um"
+fix = "yz"
+[[supports]]
+where = "x < 1 um && y > 7.99 mm && z < 1 um"
+fix = "z"
+
+[solver]
+kind = "static"
+end = "100 s"
+step = "0.25 s"
+
+[[probes]]
+name = "pull"
+reaction = { group = "x+", along = "x" }
+"#;
+
+#[test]
+fn what_cools_between_walls_bears_its_strength_and_cracks() {
+    let mesh = mesh_bytes(&structured_box([10, 2, 2], Vec3::new(0.04, 0.008, 0.008), None), MshFormat::V4_1Binary);
+    for nu in ["0", "0.3"] {
+        let case = COOLED.replace("NU", nu).replace("ENDS", "200 K");
+        let place = Workplace::with_mesh(&case, &mesh);
+        let ended = run(&place, "one", "1");
+        let peak = ended["probes"]["pull"]["max"].as_f64().unwrap() / (0.9 * 3e6 * 64e-6);
+        assert!((peak - 1.0).abs() < 0.01, "nu {nu}: {peak} of the strength of the weakest section");
+        let left = ended["probes"]["pull"]["final"].as_f64().unwrap();
+        assert!(left < 0.5 * 0.9 * 3e6 * 64e-6, "nu {nu}: {left} N at the end");
+        assert!(ended["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", ended["energy"]);
+    }
 }

@@ -315,6 +315,20 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                 (end, "end = \"30 ms\""),
             ],
         ),
+        // The false strain of a slow turn is worth as much as the turn.
+        moving(
+            "change-of-step",
+            structured_box([3, 2, 2], Vec3::new(0.4, 0.12, 0.12), None),
+            &[
+                ("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", ""),
+                (far_support, ""),
+                (
+                    "[solver]",
+                    "[[loads]]\ngroup = \"x-\"\nforce = { y = \"5 N\" }\n[[loads]]\ngroup = \"x+\"\nforce = { y = \"-5 N\" }\n[solver]",
+                ),
+                (end, "end = \"40 ms\""),
+            ],
+        ),
         moving("large-strain", bar(), &[(ramp, "{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"-150 m/s\"]] }")]),
         moving(
             "tension-outside",

@@ -59,6 +59,7 @@ pub(super) fn with_heat(
         safety: case.solver.safety,
         longest: case.solver.end / STEPS,
         alone,
+        at_rest: case.solver.kind == SolverKind::Static,
     };
     match Heat::new(&mut scene.solid, &mut scene.bonded, settings) {
         Ok(made) => {

@@ -66,7 +66,8 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
     let Damping { local, mass, stiffness, bulk_linear, bulk_quadratic, .. } = context.case.damping;
     let given = [local, mass, stiffness, bulk_linear, bulk_quadratic].iter().any(|&value| value > 0.0);
     let damage = solid.has_damage();
-    let whole = if damage { solver.end / STEPS } else { solver.end };
+    let heats = context.case.flows.heat.is_some();
+    let whole = if damage || heats { solver.end / STEPS } else { solver.end };
     let opening = options.opening.as_ref().map(|opening| statics::Opening {
         nodes: context.group_nodes(&opening.group, numbering),
         against: context.group_nodes(&opening.against, numbering),
@@ -79,7 +80,8 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
             _ if opening.is_some() => opening.map(statics::Control::Opening)?,
             Some(Control::Time) => statics::Control::Time,
             Some(Control::Path | Control::Opening) => statics::Control::Path,
-            None if damage => statics::Control::Path,
+            // Heat does not flow back along a path.
+            None if damage && !heats => statics::Control::Path,
             None => statics::Control::Time,
         },
         step: solver.step.as_ref().map_or(whole, |step| step.value.min(solver.end)),

@@ -3,7 +3,7 @@
 use fractum_scene::PackingConduction;
 
 use super::time_functions::time_function;
-use crate::model::{Heat, HeatCondition, HeatKind, HeatScheme, Solver, SolverKind, Thermal};
+use crate::model::{Control, Heat, HeatCondition, HeatKind, HeatScheme, Solver, SolverKind, Thermal};
 use crate::reader::Table;
 use crate::reader::presence::{exactly_one, optional};
 use crate::reader::vectors::field;
@@ -47,10 +47,16 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
     let packing = table.choice("packing").or_if_absent(PackingConduction::Measured);
     let conditions: Vec<Option<HeatCondition>> = table.tables("conditions").into_iter().map(condition).collect();
     table.finish("here");
-    if let Some(solver) = solver.filter(|solver| !matches!(solver.kind, SolverKind::Explicit | SolverKind::Heat)) {
-        let note = Diagnostic::error(&place, "is conducted in motion, or alone");
-        let note = note.expected("solver.kind = \"explicit\" or \"heat\"");
+    if let Some(solver) = solver.filter(|solver| matches!(solver.kind, SolverKind::Auto | SolverKind::Modes)) {
+        let note = Diagnostic::error(&place, "is conducted in motion, at rest, or alone");
+        let note = note.expected("solver.kind = \"explicit\", \"static\" or \"heat\"");
         root.reader.note(note.remedy(format!("solver.kind at line {} is another one", solver.place.line)));
+        return None;
+    }
+    let statics = solver.filter(|solver| solver.kind == SolverKind::Static).and_then(|solver| solver.statics.as_ref());
+    if statics.is_some_and(|statics| statics.opening.is_some() || matches!(statics.control, Some(Control::Path))) {
+        let note = Diagnostic::error(&place, "does not flow back along a path of equilibrium");
+        root.reader.note(note.expected("control = \"time\" in [solver], or none"));
         return None;
     }
     if staged {

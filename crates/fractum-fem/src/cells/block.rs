@@ -73,6 +73,12 @@ impl Cells {
         self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic_before(cell, strain))
     }
 
+    /// Strains of a cell that stress belongs to where a straight way of small displacements begins and where it ends.
+    pub(crate) fn elastic_ends(&self, cell: usize, [before, after]: [&[Vec3]; 2]) -> [Sym3; 2] {
+        let strain = |field: &[Vec3]| Sym3::symmetric_part(&self.gradient(cell, |node| field[node]));
+        [self.elastic_strain_before(cell, strain(before)), self.elastic_strain(cell, strain(after))]
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.volume.len()
     }

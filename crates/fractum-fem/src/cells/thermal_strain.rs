@@ -30,6 +30,11 @@ impl ThermalStrain {
         self.beyond(cell, strain, self.passed[0])
     }
 
+    /// α (T - T₀) of a cell now.
+    pub(crate) fn now(&self, cell: usize) -> f64 {
+        self.start[cell] + self.passed[1] * self.change[cell]
+    }
+
     #[inline(always)]
     fn beyond(&self, cell: usize, strain: Sym3, passed: f64) -> Sym3 {
         strain - self.unit * (self.start[cell] + passed * self.change[cell])

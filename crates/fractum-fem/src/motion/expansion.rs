@@ -43,9 +43,14 @@ pub fn start_expanded(solid: &mut Solid, rise: &[f64]) {
 ///
 /// - `rises`: T - T₀ of the nodes now, and at the end of the change [K]
 pub fn begin_expansion(solid: &mut Solid, rises: [&[f64]; 2]) {
+    solid.blocks.par_iter_mut().for_each(|block| block.begin_change(rises));
+    find_expansion_work(solid);
+}
+
+/// Finds [`expansion_work`] at the present displacements.
+pub fn find_expansion_work(solid: &mut Solid) {
     let Solid { blocks, bodies, displacement, .. } = solid;
     blocks.par_iter_mut().for_each(|block| {
-        block.begin_change(rises);
         let Some(own) = &block.cells.thermal else { return };
         let model = &bodies[block.body];
         let work = |cell: usize| {
@@ -57,10 +62,12 @@ pub fn begin_expansion(solid: &mut Solid, rises: [&[f64]; 2]) {
     });
 }
 
-/// Leads thermal strains to a part of the present change of temperatures, 0 to 1, for the step that follows.
-pub fn expand_to(solid: &mut Solid, part: f64) {
+/// Leads thermal strains along the present change of temperatures.
+///
+/// - `passed`: parts of it that had passed at the step before, and now, 0 to 1
+pub fn expand_to(solid: &mut Solid, passed: [f64; 2]) {
     for own in solid.blocks.iter_mut().filter_map(|block| block.cells.thermal.as_mut()) {
-        own.passed = [own.passed[1], part];
+        own.passed = passed;
     }
 }
 
@@ -150,7 +157,7 @@ mod tests {
             let [cold, hot] = [0.0, 100.0].map(|rise| vec![rise; count]);
             begin_expansion(&mut solid, [&cold, &hot]);
             let free = 0.5 * expansion_work(&solid);
-            expand_to(&mut solid, 1.0);
+            expand_to(&mut solid, [0.0, 1.0]);
             assert!(
                 crate::fields::element_fields::owned_strains(&solid, 0).iter().all(|strain| strain.0 == [0.0; 6]),
                 "nothing has moved yet"

@@ -13,7 +13,9 @@ pub(crate) mod turning;
 pub(crate) mod viscous_solid;
 
 pub use central_difference::{LocalDamping, WholeStep};
-pub use expansion::{begin_expansion, element_conduction, expand_to, expansion_work, set_expansion, start_expanded};
+pub use expansion::{
+    begin_expansion, element_conduction, expand_to, expansion_work, find_expansion_work, set_expansion, start_expanded,
+};
 pub use inverted::{crushed_element, inverted_element};
 pub use phase_damage::{element_phase, has_phase_fields, phase_sizes};
 pub use phase_edges::wake_phase_fields;
@@ -22,5 +24,5 @@ pub use subcycled_solid::{
     short_steps, with_copies,
 };
 pub use time_step::{StableStep, fine_stable_step, motion_frequency, stable_step_bound};
-pub use turning::let_turn;
+pub use turning::{let_spin, let_turn};
 pub use viscous_solid::{bulk_damping_ratio, set_viscosity};

@@ -225,8 +225,8 @@ pub(crate) fn raise_phases(solid: &mut Solid, values: &[Vec<f64>], before: &[Vec
                 model => {
                     let (block, cell) = model.location.of(own.edge);
                     let (cells, cell) = (&solid.blocks[block as usize].cells, cell as usize);
-                    let strain = |field: &[Vec3]| Sym3::symmetric_part(&cells.gradient(cell, |node| field[node]));
-                    Taken::straight(0.5 * hooke.stress(strain(after)).dot(strain(before))).of(cells.volume[cell])
+                    let [before, after] = cells.elastic_ends(cell, [before, after]);
+                    Taken::straight(0.5 * hooke.stress(after).dot(before)).of(cells.volume[cell])
                 }
             };
             let (cells, cell, dissipated) = history_of(solid, body, own.edge);

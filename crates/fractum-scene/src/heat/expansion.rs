@@ -110,14 +110,39 @@ impl Expansion {
     /// Leads temperatures to a time of the present change [s], for the step that follows; returns half of the work of the
     /// expansion, at the present stresses [J].
     pub(super) fn lead(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded, temperature: &[f64]) -> f64 {
-        let [begin, end] = self.span;
-        let part = if end > begin { ((time - begin) / (end - begin)).min(1.0) } else { 1.0 };
-        self.passed = [self.passed[1], part];
+        self.passed = [self.passed[1], self.part_at(time)];
         self.find_now(temperature);
-        motion::expand_to(solid, part);
+        motion::expand_to(solid, self.passed);
         self.bonds.iter_mut().for_each(|own| own.forget(bonded));
         self.set_lengths(bonded);
         self.half_work(solid, bonded)
+    }
+
+    /// Part of the present change at a time [s].
+    fn part_at(&self, time: f64) -> f64 {
+        let [begin, end] = self.span;
+        if end > begin { ((time - begin) / (end - begin)).min(1.0) } else { 1.0 }
+    }
+
+    /// Has solids expanded as at a time of the present change [s], at which an equilibrium is tried.
+    pub(super) fn try_at(&mut self, time: f64, solid: &mut Solid, temperature: &[f64]) {
+        self.passed[1] = self.part_at(time);
+        self.find_now(temperature);
+        motion::expand_to(solid, self.passed);
+    }
+
+    /// Takes what was tried as the step before, too; returns half of the work, at the stresses of before [J].
+    pub(super) fn settle(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
+        let work = self.half_work(solid, bonded);
+        motion::expand_to(solid, [self.passed[1]; 2]);
+        work
+    }
+
+    /// The other half, at the stresses of the equilibrium [J].
+    pub(super) fn finish_settled(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
+        let work = self.half_work(solid, bonded);
+        self.passed[0] = self.passed[1];
+        work
     }
 
     /// The other half of the work, at the stresses of the step after it [J].
@@ -172,11 +197,12 @@ impl Expansion {
         self.begin(span, solid, temperature);
         for part in passed {
             self.passed = [self.passed[1], part];
-            motion::expand_to(solid, part);
+            motion::expand_to(solid, self.passed);
             self.find_now(temperature);
             self.bonds.iter_mut().for_each(|own| own.forget(bonded));
             self.set_lengths(bonded);
         }
+        motion::find_expansion_work(solid);
         self.work = work;
     }
 }

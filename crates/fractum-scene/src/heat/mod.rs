@@ -56,6 +56,8 @@ pub struct HeatSettings {
     pub longest: f64,
     /// Whether nothing moves.
     pub alone: bool,
+    /// Whether bodies that expand are at rest, and no wave is excited.
+    pub at_rest: bool,
 }
 
 /// Heat in the bodies of a scene.
@@ -116,7 +118,8 @@ impl Heat {
         if let Some(expansion) = &mut expansion {
             expansion.start(0.0, solid, bonded, field.temperature());
         }
-        let stable = settings.safety * field.stable_step() * if expansion.is_some() { SMOOTH } else { 1.0 };
+        let stable =
+            settings.safety * field.stable_step() * if expansion.is_some() && !settings.at_rest { SMOOTH } else { 1.0 };
         let solver = settings.implicit.then(ImplicitHeat::default);
         let step = settings.step.unwrap_or(stable.min(settings.longest));
         Ok(Heat { step, field, pairs, solver, nodes, stale: false, expansion })

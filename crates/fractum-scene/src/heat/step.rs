@@ -77,6 +77,38 @@ impl Heat {
         expansion.as_mut().map_or(0.0, |expansion| expansion.lead(time, solid, bonded, field.temperature()))
     }
 
+    /// Conducts to the end of a step of equilibria at most, and expands bodies by the temperatures of `target`.
+    ///
+    /// - `time`: of the last equilibrium [s]
+    pub(crate) fn warm_to(
+        &mut self,
+        [time, target]: [f64; 2],
+        solid: &mut Solid,
+        bonded: &Bonded,
+    ) -> Result<(), String> {
+        // A shorter step than was tried finds its temperatures between those of the longer one.
+        if target > self.field.time() * (1.0 + SAME_TIME) {
+            self.conduct_to(target, solid, bonded)?;
+            if let Some(expansion) = &mut self.expansion {
+                expansion.begin([time, target], solid, self.field.temperature());
+            }
+        }
+        if let Some(expansion) = &mut self.expansion {
+            expansion.try_at(target, solid, self.field.temperature());
+        }
+        Ok(())
+    }
+
+    /// Takes the expansion that was tried as done; returns half of its work, at the stresses of before [J].
+    pub(crate) fn settle_expansion(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
+        self.expansion.as_mut().map_or(0.0, |expansion| expansion.settle(solid, bonded))
+    }
+
+    /// The other half [J]; nothing expands from here to there any more.
+    pub(crate) fn finish_settled_expansion(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
+        self.expansion.as_mut().map_or(0.0, |expansion| expansion.finish_settled(solid, bonded))
+    }
+
     /// The other half of the work of the last expansion [J].
     pub(crate) fn finish_expansion(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
         self.expansion.as_mut().map_or(0.0, |expansion| expansion.finish(solid, bonded))

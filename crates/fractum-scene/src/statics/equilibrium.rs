@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contact::accept_contacts;
 use crate::balance::book_equilibrium;
+use crate::conduct::{finish_settled_expansion, settle_expansion};
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::{StepReport, release_cut_elements};
@@ -72,14 +73,15 @@ pub(super) fn accept_equilibrium(
     outer: &mut AppliedForces,
 ) -> Result<StepReport, StepError> {
     let before = std::mem::replace(&mut scene.solid.displacement, displacement.to_vec());
+    let mut external = settle_expansion(scene);
     scene.solid.update_internal_forces(0.0, true);
+    external += finish_settled_expansion(scene);
     let inner = scene.solid.force.clone();
     scene.loads.add_forces(&mut scene.solid, time, 0.0);
     let load: Vec<Vec3> = scene.solid.force.iter().zip(&inner).map(|(f, i)| f - i).collect();
     accept_contacts(scene, &before, scene.clock.time, time);
     add_contact_forces_at_rest(scene);
     let reaction = scene.supports.take_reactions(&scene.solid.force);
-    let mut external = 0.0;
     for i in 0..displacement.len() {
         let moved = displacement[i] - before[i];
         let mean = |now: &[Vec3], then: &[Vec3]| (now[i] + then.get(i).copied().unwrap_or_default()) * 0.5;

@@ -185,7 +185,7 @@ impl StaticSolver {
         }
         let Response { start, slope, start_stress, slope_stress, .. } = &mut self.response;
         scene.solid.effective_stresses(start, start_stress);
-        scene.solid.effective_stresses(slope, slope_stress);
+        scene.solid.effective_stress_changes(slope, slope_stress);
         match &self.settings.control {
             Control::Time => Some(longest),
             Control::Opening(opening) if !by_damage => {
@@ -268,7 +268,7 @@ impl StaticSolver {
             let change = (there.displacement[i] - here.displacement[i]) / ahead;
             *p = Vec3::from_fn(|a, _| if bits & (1 << a) == 0 { 0.0 } else { change[a] });
         }
-        solid.secant_force(&self.trial, &field, &mut self.response.right);
+        solid.secant_change(&self.trial, &field, &mut self.response.right);
         for (i, right) in self.response.right.iter_mut().enumerate() {
             *right = (there.force[i] - here.force[i]) / ahead - *right;
         }

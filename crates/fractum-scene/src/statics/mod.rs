@@ -38,6 +38,7 @@ pub use static_dynamic::DynamicPhase;
 pub use support_check::check_supports;
 pub use system::LinearWork;
 
+use crate::conduct::warm_to;
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::StepReport;
@@ -264,6 +265,7 @@ impl StaticSolver {
                 true if held => ONSET,
                 _ => self.pace.growth,
             };
+            warm_to(scene, scene.clock.time + longest)?;
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found
                 && !self.jumps(&points)
@@ -298,6 +300,7 @@ impl StaticSolver {
                 Control::Path | Control::Opening(_) => self.pace.growth <= GROWTH[1] || growth.abs() == ONSET,
             };
             if smallest && monotone {
+                warm_to(scene, scene.clock.time)?;
                 return Err(no_equilibrium(scene));
             }
             monotone = smallest;

@@ -92,7 +92,7 @@ impl Scene {
     /// # Errors
     /// As [`Scene::step`].
     pub fn look(&mut self, interlude: &mut DynamicPhase) -> Result<bool, StepError> {
-        let (clock, displacement) = (self.clock, self.solid.displacement.clone());
+        let (clock, displacement, heat) = (self.clock, self.solid.displacement.clone(), self.heat_state());
         let frames: Vec<Frame> = self.contacts.rigid_bodies().iter().map(|rigid_body| rigid_body.frame).collect();
         let report = self.step(true)?;
         let kinetic = self.ledger[EnergyKind::Kinetic];
@@ -108,6 +108,7 @@ impl Scene {
         // What the step did after its energies were taken is taken back.
         self.clock = clock;
         self.solid.displacement = displacement;
+        self.restore_heat(heat);
         self.solid.velocity.fill(Vec3::zeros());
         self.debris.stop();
         for (rigid_body, frame) in self.contacts.rigid_bodies_mut().iter_mut().zip(frames) {

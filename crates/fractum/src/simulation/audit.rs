@@ -170,9 +170,9 @@ const VISIBLY_SINGLE: f64 = 0.05;
 
 /// What the scene noticed, in words.
 ///
-/// - `at_rest`: whether instants are load factors
+/// - `at_rest`: whether the scene is in equilibrium; instants then are load factors, unless heat goes on with time
 fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest: bool) -> Warning {
-    let when = at_instant(*time, at_rest);
+    let when = at_instant(*time, at_rest && scene.heat().is_none());
     let place = match place(scene, *site) {
         place if place.is_empty() => when,
         place => format!("{place}, {when}"),
@@ -233,6 +233,14 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
                 percent(*value)
             ),
             "forces under a given motion lack that share: take smaller elements, or a rigid shape that is driven instead of a solid that is thrown",
+        ),
+        Notice::ChangeOfStep => (
+            Code::ChangeOfStep,
+            format!(
+                "changes of the time step, or of small strains to corotational ones, have brought or taken {} of the energy",
+                percent(*value)
+            ),
+            "set kinematics = \"corotational\" on bodies that turn, or take a smaller solver.safety",
         ),
         Notice::Overlap => (
             Code::DeepOverlap,

@@ -69,7 +69,7 @@ impl Simulation {
                 largest_overlap: self.recorder.largest_overlap().cloned(),
             },
             warnings: self.messages.warnings().to_vec(),
-            time: summary::time(&clock, reason, self.solver.rests()),
+            time: summary::time(&clock, reason, self.counts_load()),
             modes: modes_of(&self.scene).map(modes::of_summary),
             wall: summary::wall(self.started.elapsed(), &self.phases),
             ..summary::of_scene(&self.scene)
@@ -85,6 +85,7 @@ impl Simulation {
         let (steps, seconds) = (clock.step, summary.wall.total);
         self.messages.log.line(format!("{}: {steps} steps, {seconds:.2} s", summary::status_text(status)))?;
         let load = self.load().map(|(index, _)| self.case.probes[index].name.value.clone());
+        let (at_rest, shows_modes) = (self.counts_load(), self.solver.shows_modes());
         let kept = Notes {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
@@ -106,7 +107,6 @@ impl Simulation {
             return Err(Failure::Elsewhere(ExitCode::Stopped));
         }
         let folder = self.folder.display();
-        let (at_rest, shows_modes) = (self.solver.rests(), self.solver.shows_modes());
         let instant = |time: f64| if shows_modes { mode_text(time) } else { at_instant(time, at_rest) };
         let saved = self.saved.map_or(format!("{folder}"), |Saved { step, time, .. }| {
             format!("{folder}: step {step}, {}", instant(time))
@@ -144,7 +144,7 @@ impl Simulation {
         skin: Skin,
         files: &mut Group,
     ) -> Result<Vec<PictureNote>, Failure> {
-        let (at_rest, shows_modes) = (self.solver.rests(), self.solver.shows_modes());
+        let (at_rest, shows_modes) = (self.counts_load(), self.solver.shows_modes());
         let peak = self.time_of_peak().filter(|_| !shows_modes);
         let instant = |time: f64| if shows_modes { mode_text(time) } else { instant_text(time, at_rest) };
         let Simulation { scene, folder, phases, recorder, .. } = self;

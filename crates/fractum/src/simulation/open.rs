@@ -253,7 +253,7 @@ fn found(warnings: &[Diagnostic], loaded: Option<&Loaded<RunState>>, strict: boo
 /// [`Failure::Input`] where the case ends before that.
 fn goes_on(case: &Case, loaded: &Loaded<RunState>) -> Result<String, Failure> {
     let (time, end) = (loaded.header.time, case.end());
-    let at_rest = loaded.state.solver.rests();
+    let at_rest = loaded.state.solver.rests() && case.flows.heat.is_none();
     let [reached, ends] = [time, end].map(|time| at_instant(time, at_rest));
     let [bare, before] = [end, loaded.state.end].map(|time| instant_text(time, at_rest));
     if end < time && end < loaded.state.end {
