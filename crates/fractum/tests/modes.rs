@@ -55,3 +55,23 @@ fn what_is_not_held_is_told_and_what_is_no_solid_is_refused() {
     assert_eq!(ended.code, Some(1));
     assert!(ended.stderr.contains("body \"floor\"") && ended.stderr.contains("solid bodies"), "{}", ended.stderr);
 }
+
+#[test]
+fn the_plan_of_motion_tells_what_damping_does_to_the_first_vibration() {
+    let slow = SNAP_BACK.replace("kind = \"static\"", "kind = \"explicit\"");
+    let line = |damping: &str| {
+        let place = Workplace::new(&slow.replace("fractum = 1\n", &format!("fractum = 1\n{damping}")));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let line = ended.stdout.lines().find(|line| line.starts_with("damping ")).map(str::to_owned);
+        line.unwrap_or_else(|| panic!("{}", ended.stdout))
+    };
+    let none = line("");
+    assert!(none.contains("does not come to rest; mass = \""), "{none}");
+    // With what it says the vibration is damped critically.
+    let critical = none.split("mass = \"").nth(1).and_then(|rest| rest.split('"').next()).unwrap();
+    let damped = line(&format!("damping = {{ mass = \"{critical}\" }}\n"));
+    assert!(damped.contains("has 100 % of its critical damping"), "{damped}");
+    let both = line(&format!("damping = {{ mass = \"3*{critical}\", local = 0.2 }}\n"));
+    assert!(both.contains("by mass") && both.contains("6.4 % by local") && both.contains("lags behind"), "{both}");
+}

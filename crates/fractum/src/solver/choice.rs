@@ -1,7 +1,7 @@
 //! Motion or equilibrium: what each would cost, for the plan of `fractum check`.
 
 use fractum_case::build::{BuiltScene, may_rest};
-use fractum_case::model::{Body, BodyKind, Case, Motion, SolverKind};
+use fractum_case::model::{Body, BodyKind, Case, Damping, Motion, SolverKind};
 use fractum_output::number::{quantity, significant};
 use fractum_scene::Scene;
 use fractum_scene::statics::Stiffness;
@@ -14,7 +14,7 @@ pub(crate) const PATH_ITERATIONS: f64 = 600.0;
 /// Nodes up to which the first period is looked for: a few seconds.
 const MOST_NODES: usize = 300_000;
 
-/// Which solver suits a case that names one, why, and which end suits it, line by line; nothing where the case leaves it open,
+/// Which solver suits a case that names one, why, what its damping does, and which end suits it, line by line; nothing where the case leaves it open,
 /// since [`choose`] has said it.
 pub(crate) fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str, String)> {
     if built.scene.solid.body_count() == 0
@@ -29,8 +29,13 @@ pub(crate) fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str,
         let text = format!("not estimated for more than {MOST_NODES} nodes; slender bodies are for kind = \"static\"");
         return vec![("choice", text)];
     }
-    let Decision { kind, why, period } = decide(case, built);
+    let Decision { kind, why, period, slow } = decide(case, built);
     let mut lines = vec![("choice", said(kind, &why))];
+    if built.statics.is_none() {
+        let damps = !damping_ratios(&case.damping, 1.0).is_empty();
+        let period = period.or_else(|| damps.then(|| quick_period(&mut built.scene, case.solver.end)).flatten());
+        lines.extend(period.and_then(|period| Some(("damping", damping(&case.damping, period, slow)?))));
+    }
     let slow = |period: f64| periods(&built.scene) * period;
     if let Some(slow) = period.map(slow).filter(|slow| built.statics.is_none() && case.solver.end < *slow) {
         let [slow, end] = [slow, case.solver.end].map(|time| quantity(time, "s"));
@@ -38,6 +43,63 @@ pub(crate) fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str,
         lines.push(("end", text));
     }
     lines
+}
+
+/// What the damping of a case does to the first vibration, or what would damp it where loads are slow and nothing does.
+fn damping(damping: &Damping, period: f64, slow: bool) -> Option<String> {
+    let critical = quantity(4.0 * std::f64::consts::PI / period, "1/s");
+    let first = quantity(period, "s");
+    let ratios = damping_ratios(damping, period);
+    if ratios.is_empty() {
+        return slow.then(|| {
+            format!(
+                "none: the first vibration of {first} does not come to rest; mass = \"{critical}\" damps it critically"
+            )
+        });
+    }
+    let sum: f64 = ratios.iter().map(|(_, ratio)| ratio).sum();
+    let percent = |ratio: f64| format!("{} %", significant(100.0 * ratio, 2));
+    let part = |(key, ratio): &(&str, f64)| format!("{} by {key}", percent(*ratio));
+    let parts = match ratios.as_slice() {
+        [_] => String::new(),
+        several => format!(": {}", several.iter().map(part).collect::<Vec<_>>().join(", ")),
+    };
+    let more = match slow && sum > OVERDAMPED {
+        true => format!("; with more than mass = \"{critical}\" the body lags behind slow loads"),
+        false => String::new(),
+    };
+    Some(format!("the first vibration of {first} has {} of its critical damping{parts}{more}", percent(sum)))
+}
+
+/// Damping ratio above which a body lags behind a slow load.
+const OVERDAMPED: f64 = 2.0;
+
+/// What each kind of damping gives the vibration of a period, over critical damping: α T/4π by mass, π β/T by stiffness, and a/π
+/// by local damping, which takes 4 a of the energy in a period.
+fn damping_ratios(damping: &Damping, period: f64) -> Vec<(&'static str, f64)> {
+    let pi = std::f64::consts::PI;
+    let all = [
+        ("mass", damping.mass * period / (4.0 * pi)),
+        ("stiffness", pi * damping.stiffness / period),
+        ("local", damping.local / pi),
+    ];
+    all.into_iter().filter(|(_, ratio)| *ratio > 0.0).collect()
+}
+
+/// Nodes, and seconds of a solution, above which the first period is not looked for only to tell of damping.
+const QUICK: (usize, f64) = (50_000, 0.3);
+
+/// The first period, where it takes less than a second.
+fn quick_period(scene: &mut Scene, end: f64) -> Option<f64> {
+    if scene.solid.reference.len() > QUICK.0 {
+        return None;
+    }
+    let mut stiffness = Stiffness::new(scene).ok()?;
+    let (entries, direct) = stiffness.entries();
+    if solution_time(entries, direct) > QUICK.1 {
+        return None;
+    }
+    stiffness.prepare(scene).and_then(|()| stiffness.first_period(scene, end)).ok()
 }
 
 fn said(kind: &str, why: &str) -> String {
@@ -82,11 +144,13 @@ struct Decision {
     why: String,
     /// First period that the load excites [s], where it was found.
     period: Option<f64>,
+    /// Whether loads are slow against it.
+    slow: bool,
 }
 
 impl Decision {
     fn motion(why: &str) -> Self {
-        Decision { kind: "explicit", why: why.to_owned(), period: None }
+        Decision { kind: "explicit", why: why.to_owned(), period: None, slow: false }
     }
 }
 
@@ -118,7 +182,7 @@ fn decide(case: &Case, built: &mut BuiltScene) -> Decision {
         significant(rest, 2),
         significant(motion, 2)
     );
-    Decision { kind: if rest < motion { "static" } else { "explicit" }, why, period: Some(period) }
+    Decision { kind: if rest < motion { "static" } else { "explicit" }, why, period: Some(period), slow: true }
 }
 
 /// Time of one solution of the linear system on a common machine [s].
