@@ -17,4 +17,6 @@ mod ranks_particles;
 mod rigid_contact;
 mod scene;
 mod statics;
+mod stressed_modes;
 mod subcycling;
+mod tied_modes;

@@ -13,9 +13,9 @@ use fractum_scene::{
 use fractum_tests::{CONCRETE, jittered_box};
 use nalgebra::DMatrix;
 
-const SOLVERS: [LinearSolver; 3] = [LinearSolver::Direct, LinearSolver::Faer, LinearSolver::Iterative];
+pub(super) const SOLVERS: [LinearSolver; 3] = [LinearSolver::Direct, LinearSolver::Faer, LinearSolver::Iterative];
 
-fn scene(solid: Solid, supports: Vec<Support>) -> Scene {
+pub(super) fn scene(solid: Solid, supports: Vec<Support>) -> Scene {
     let supports = Supports::new(supports, &solid.reference).unwrap();
     let loads = Loads::new(Vec::new(), solid.reference.len());
     let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
@@ -29,7 +29,7 @@ fn scene(solid: Solid, supports: Vec<Support>) -> Scene {
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 
-fn modes(scene: &Scene, count: usize, linear: LinearSolver) -> Modes {
+pub(super) fn modes(scene: &Scene, count: usize, linear: LinearSolver) -> Modes {
     let found = find_modes(scene, ModesSettings { count, linear }, || false).unwrap();
     assert!(found.converged, "{linear:?}");
     found

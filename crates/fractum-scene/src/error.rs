@@ -195,6 +195,15 @@ pub enum StepError {
         /// Why, in words.
         reason: String,
     },
+    /// Solids are not stable under the stress they start with.
+    #[error(
+        "the solids buckle under the in-situ stress: their fastest motion grows by e in {growth:.3e} s, and what grows does not vibrate - \
+         lower the compression in in_situ.stress, or hold the solids with [[supports]]"
+    )]
+    Buckles {
+        /// Time in which the fastest motion grows by e [s].
+        growth: f64,
+    },
     /// The step is above the stable limit.
     #[error(
         "step {step}, t = {time:.6e} s: unstable: elements and bonds hold {ratio:.1} times the energy put in; fastest near {culprit}; \u{394}t = {dt:.3e} s, \

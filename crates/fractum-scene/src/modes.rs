@@ -11,10 +11,10 @@ pub struct Mode {
     pub residual: f64,
     /// Participation in a motion of the ground along each axis, φᵀ M e [√kg].
     pub participation: Vec3,
-    /// Motion of the nodes or particles, of modal mass 1 [1/√kg]; the largest component is positive.
+    /// Motion of the nodes of solids, of modal mass 1 [1/√kg]; the largest component of all unknowns is positive.
     pub shape: Vec<Vec3>,
-    /// Rotation of the particles of bonded bodies, as the shape [1/(m √kg)]; none of solids.
-    pub turns: Vec<Vec3>,
+    /// Displacement [1/√kg] and rotation [1/(m √kg)] of the particles of bonded bodies.
+    pub particles: Vec<[Vec3; 2]>,
 }
 
 impl Mode {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::{BREAKING_BAR, SNAP_BACK, Workplace, summary};
+use crate::common::{BONDED_BAR, BREAKING_BAR, SNAP_BACK, Workplace, summary};
 
 #[test]
 fn the_command_finds_the_vibrations_of_any_case_with_solids() {
@@ -54,6 +54,52 @@ fn what_is_not_held_is_told_and_what_is_no_solid_is_refused() {
     let ended = place.fractum(&["modes", "case.toml", "-o", "out"]);
     assert_eq!(ended.code, Some(1));
     assert!(ended.stderr.contains("body \"floor\"") && ended.stderr.contains("solid bodies"), "{}", ended.stderr);
+}
+
+/// A free bar under a stress along it.
+fn stressed(stress: &str) -> String {
+    let free = SNAP_BACK.lines().filter(|line| !line.starts_with("supports") && !line.starts_with("probes"));
+    let free: Vec<&str> = free.collect();
+    let solver = format!(
+        "in_situ = {{ stress = {{ xx = \"{stress}\" }}, groups = [\"x-\", \"x+\"] }}\nsolver = {{ kind = \"modes\", count = 3 }}"
+    );
+    free.join("\n").replace("solver = { kind = \"static\", end = \"1 s\" }", &solver)
+}
+
+#[test]
+fn a_pulled_bar_swings_back_and_a_pressed_one_buckles_and_both_are_told() {
+    let place = Workplace::new(&stressed("1 MPa"));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("4 rigid motions that nothing prevents"), "{}", ended.stderr);
+    let place = Workplace::new(&stressed("-1 MPa"));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
+    assert_ne!(ended.code, Some(0));
+    for said in ["the solids buckle under the in-situ stress", "in_situ.stress", "[[supports]]"] {
+        assert!(ended.stderr.contains(said), "{}", ended.stderr);
+    }
+    assert!(!ended.stderr.contains("NaN"), "{}", ended.stderr);
+}
+
+#[test]
+fn what_has_no_place_among_vibrations_is_refused() {
+    let loads = "loads = [{ group = \"x+\", pressure = \"1 kPa\" }]\n";
+    let with_loads = SNAP_BACK.replace("fractum = 1\n", &format!("fractum = 1\n{loads}"));
+    let modes = |case: &str| case.replace("kind = \"static\", end = \"1 s\"", "kind = \"modes\"");
+    let in_situ =
+        "in_situ = { stress = { xx = \"1 MPa\" }, groups = [\"x-\", \"x+\"] }\nmesh = { file = \"bar.msh\" }\n";
+    let bonded = BONDED_BAR.replace("fractum = 1\n", &format!("fractum = 1\n{in_situ}"));
+    let solid = "[[bodies]]\nname = \"solid\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"glass\"\n";
+    let wrong = [
+        (modes(&with_loads), vec!["loads", "without [in_situ]"]),
+        (modes(&bonded) + solid, vec!["[in_situ] and the bonded body \"bar\"", "solid bodies alone"]),
+    ];
+    for (case, said) in wrong {
+        let place = Workplace::new(&case);
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+        said.iter().for_each(|said| assert!(ended.stderr.contains(said), "{said}: {}", ended.stderr));
+    }
 }
 
 #[test]

@@ -119,15 +119,23 @@ pub(super) fn bonded_statics(context: &mut Context<'_>, bonded: &Bonded) -> Opti
 /// Settings of the search for natural vibrations; none for other solvers, or with errors noted.
 pub(super) fn modes(context: &mut Context<'_>) -> Option<ModesSettings> {
     let options = context.case.solver.modes?;
+    let vibrates = |body: &Body| match &body.kind {
+        BodyKind::Solid(_) => true,
+        BodyKind::Bonded(bonded) => bonded.law == BondLawKind::CohesiveBeam,
+        BodyKind::Rigid(_) | BodyKind::Particles(_) => false,
+    };
     let bodies = &context.case.bodies;
-    let is_solid = |body: &&Body| matches!(body.kind, BodyKind::Solid(_));
-    let is_beams =
-        |body: &&Body| matches!(&body.kind, BodyKind::Bonded(bonded) if bonded.law == BondLawKind::CohesiveBeam);
-    let bonded = bodies.first().is_some_and(|body| is_beams(&body));
-    if let Some(body) = bodies.iter().find(|body| if bonded { !is_beams(body) } else { !is_solid(body) }) {
+    let is_bonded = |body: &&Body| matches!(body.kind, BodyKind::Bonded(_));
+    let place = place_of_solver(context);
+    if let Some(body) = bodies.iter().find(|body| !vibrates(body)) {
         let found = format!("= \"modes\" with body \"{}\"", body.name.value);
-        let expected = "solid bodies, or bonded bodies of cohesive beams, by themselves: contact and ties have no part in natural vibrations";
-        context.error(&place_of_solver(context), found, expected);
+        let expected = "solid bodies, and bonded bodies of cohesive beams, by themselves: contact has no part in natural vibrations";
+        context.error(&place, found, expected);
+        return None;
+    }
+    if let Some(body) = bodies.iter().find(is_bonded).filter(|_| context.case.in_situ.is_some()) {
+        let found = format!("= \"modes\" with [in_situ] and the bonded body \"{}\"", body.name.value);
+        context.error(&place, found, "solid bodies alone, or no [in_situ]");
         return None;
     }
     Some(ModesSettings { count: options.count, linear: options.linear_solver })

@@ -179,7 +179,15 @@ fn modes(root: &Table<'_>, table: &Table<'_>, kind: Option<SolverKind>) -> Optio
         "balance_stop",
     ];
     OTHERS.iter().for_each(|key| table.refuse(key, "with kind = \"modes\""));
-    refuse_motion(root, root, &["loads", "in_situ"], WITH_MODES);
+    if !root.has("in_situ") {
+        // Loads of t = 0 belong to the stress of the start.
+        refuse_motion(
+            root,
+            root,
+            &["loads"],
+            "with solver.kind = \"modes\" and without [in_situ], since free vibrations have no loads",
+        );
+    }
     for body in root.tables("bodies") {
         refuse_motion(root, &body, &["initial_velocity"], WITH_MODES);
     }

@@ -88,6 +88,11 @@ impl SurfaceSupports {
         self.dashpots.nodes.iter().chain(&self.springs.nodes).copied()
     }
 
+    /// Stiffness of the springs of every node that has some [N/m].
+    pub(crate) fn springs(&self) -> impl Iterator<Item = (u32, &Matrix3<f64>)> {
+        self.springs.nodes.iter().copied().zip(&self.springs.matrix)
+    }
+
     /// Whether they act on a node.
     pub(crate) fn act_on(&self, node: u32) -> bool {
         [&self.dashpots, &self.springs].iter().any(|own| own.nodes.binary_search(&node).is_ok())

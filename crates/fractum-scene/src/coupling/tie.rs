@@ -104,6 +104,21 @@ impl Ties {
         self.facets.iter().flat_map(|facet| self.of(facet).iter().map(|own| (own.particle, facet.nodes[0])))
     }
 
+    /// Every tied particle, with its displacement and rotation by small motions of each node of its facet.
+    pub(crate) fn motions(&self) -> impl Iterator<Item = (u32, [(u32, [Mat3; 2]); 3])> {
+        self.facets.iter().flat_map(|facet| {
+            let of = move |own: &TiedParticle| {
+                let arm = (facet.rotation * own.offset).cross_matrix();
+                let by = |k: usize| {
+                    let turn = facet.inverse * facet.turned[k].cross_matrix();
+                    (facet.nodes[k], [Mat3::identity() * own.weights[k] - arm * turn, turn])
+                };
+                (own.particle, [0, 1, 2].map(by))
+            };
+            self.of(facet).iter().map(of)
+        })
+    }
+
     /// Nodes that carry tied particles.
     pub(crate) fn nodes(&self) -> impl Iterator<Item = u32> {
         self.facets.iter().flat_map(|facet| facet.nodes)

@@ -1,10 +1,9 @@
 use fractum_fem::{CellDamage, Solid};
 use fractum_math::Vec3;
-use fractum_sparse::{Pairs, Search, SparseError};
+use fractum_sparse::SparseError;
 
 use super::contact::Spring;
 use super::settings::{LinearSolver, StaticSettings};
-use super::slowest::Found;
 use super::system::{LinearWork, System};
 use crate::scene::Scene;
 
@@ -85,27 +84,6 @@ impl LinearSystem {
             LinearSystem::Plane(system) => system.sharpen(),
             LinearSystem::Space(system) => system.sharpen(),
         }
-    }
-
-    /// As [`System::lowest_pairs`]: eigenvalues, vectors of the nodes, residuals, and whether all are good enough.
-    pub(super) fn lowest_pairs(
-        &mut self,
-        solid: &Solid,
-        rigid: &[Vec<Vec3>],
-        shift: f64,
-        search: Search,
-    ) -> Result<Found<Vec<Vec3>>, SparseError> {
-        fn nodal<const B: usize>(pairs: Pairs<B>) -> Found<Vec<Vec3>> {
-            let vector = |own: [f64; B]| Vec3::from_fn(|a, _| if a < B { own[a] } else { 0.0 });
-            let shapes = pairs.vectors.into_iter().map(|own| own.into_iter().map(vector).collect()).collect();
-            let Pairs { values, residuals, extensions, converged, .. } = pairs;
-            Found { values, shapes, residuals, extensions, converged }
-        }
-        let damage = solid.cell_damage();
-        Ok(match self {
-            LinearSystem::Plane(system) => nodal(system.lowest_pairs(solid, &damage, rigid, shift, search)?),
-            LinearSystem::Space(system) => nodal(system.lowest_pairs(solid, &damage, rigid, shift, search)?),
-        })
     }
 
     pub(super) fn factor_entries(&self) -> Option<usize> {

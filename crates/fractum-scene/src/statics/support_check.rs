@@ -61,26 +61,6 @@ pub(super) fn pins(solid: &Solid, held: &[u8]) -> Vec<u8> {
     pinned
 }
 
-/// Connected pieces, and the rigid motions that nothing prevents: velocities of all nodes.
-///
-/// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
-pub(super) fn rigid_motions(solid: &Solid, held: &[u8]) -> (usize, Vec<Vec<Vec3>>) {
-    let pieces = pieces(solid);
-    let count = pieces.len();
-    let mut motions = Vec::new();
-    for (_, nodes) in pieces {
-        let piece = Piece::new(solid, &nodes, held);
-        for motion in piece.free_motions() {
-            let mut velocities = vec![Vec3::zeros(); solid.reference.len()];
-            for &node in &nodes {
-                velocities[node as usize] = piece.velocity(&motion, solid.reference[node as usize]);
-            }
-            motions.push(velocities);
-        }
-    }
-    (count, motions)
-}
-
 /// The supports of a connected piece as a quadratic form over its six rigid motions.
 #[derive(Clone, Copy)]
 pub(super) struct Piece {
@@ -91,18 +71,19 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A piece in space that nothing holds.
+    /// A piece that nothing holds.
     ///
     /// - `size`: distance by which rotations are measured [m], > 0
-    pub(super) fn free(centre: Vec3, size: f64) -> Self {
-        Piece { centre, size, gram: Matrix6::zeros(), plane: false }
+    /// - `plane`: whether it stays in its plane
+    pub(super) fn free(centre: Vec3, size: f64, plane: bool) -> Self {
+        Piece { centre, size, gram: Matrix6::zeros(), plane }
     }
 
     fn new(solid: &Solid, nodes: &[u32], held: &[u8]) -> Self {
         let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;
         let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
         let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let mut piece = Piece { plane: solid.is_plane(), ..Piece::free(centre, size) };
+        let mut piece = Piece::free(centre, size, solid.is_plane());
         for &node in nodes {
             let bits = held.get(node as usize).copied().unwrap_or(0);
             let axes = (0..3).filter(|axis| bits & (1 << axis) != 0);
@@ -163,7 +144,7 @@ impl Piece {
 }
 
 /// Connected pieces: the body of their first element, and their nodes.
-fn pieces(solid: &Solid) -> Vec<(usize, Vec<u32>)> {
+pub(super) fn pieces(solid: &Solid) -> Vec<(usize, Vec<u32>)> {
     let part = parts(solid);
     let mut body_of = vec![usize::MAX; part.len()];
     for body in 0..solid.body_count() {

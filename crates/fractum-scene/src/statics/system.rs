@@ -4,10 +4,7 @@ use std::sync::Arc;
 
 use fractum_fem::{CellDamage, Solid};
 use fractum_math::{Ragged, Vec3};
-use fractum_sparse::{
-    BlockMatrix, Factor, Inverse, Motions, Pairs, Pattern, Preconditioner, Search, SparseError, Vibration,
-    conjugate_gradients, lowest_pairs,
-};
+use fractum_sparse::{BlockMatrix, Factor, Motions, Pattern, Preconditioner, SparseError, conjugate_gradients};
 
 use super::LinearSolver;
 use super::contact::Spring;
@@ -22,7 +19,7 @@ const DIRECT_IF_REUSED: usize = 250_000;
 /// then stays where it is, and equilibrium, which the forces alone are held against, does not know it.
 const ANCHOR: f64 = 1e-10;
 /// Nodes in a cluster of the coarse space.
-const CLUSTER: usize = 64;
+pub(super) const CLUSTER: usize = 64;
 /// Times that the tolerance of an iteration may be sharpened within a step, and by how much.
 const SHARPENED: u32 = 2;
 const SHARPER: f64 = 1e-3;
@@ -38,6 +35,67 @@ pub struct LinearWork {
     pub solutions: usize,
     /// Iterations of conjugate gradients.
     pub iterations: usize,
+}
+
+/// What a choice means for a system: any but [`LinearSolver::Auto`].
+///
+/// - `reuse`: solutions that are expected with one matrix
+pub(super) fn settled(choice: LinearSolver, unknowns: usize, plane: bool, reuse: usize) -> LinearSolver {
+    let fits = unknowns <= DIRECT[usize::from(plane)] || reuse >= REUSE && unknowns <= DIRECT_IF_REUSED;
+    match choice {
+        LinearSolver::Auto if fits => LinearSolver::Direct,
+        LinearSolver::Auto => LinearSolver::Iterative,
+        chosen => chosen,
+    }
+}
+
+/// Which rows are coupled by the cells of a solid and by other cliques, and the place of the block of every pair of nodes of
+/// every cell.
+///
+/// - `rows`: block rows, the first of which are the nodes
+pub(super) fn lay_out<Clique: AsRef<[u32]>>(
+    solid: &Solid,
+    rows: usize,
+    cliques: &[Clique],
+) -> Result<(Arc<Pattern>, Vec<u32>), SparseError> {
+    let cells = solid.cell_nodes();
+    let pattern = Arc::new(Pattern::from_cliques(
+        rows,
+        &Ragged::from_rows(cells.rows().chain(cliques.iter().map(AsRef::as_ref))),
+    ));
+    if pattern.blocks() > u32::MAX as usize {
+        return Err(SparseError::TooLarge { entries: pattern.blocks() });
+    }
+    let place = |(&i, &j): (&u32, &u32)| pattern.place(i as usize, j as usize) as u32;
+    let pairs = cells.rows().flat_map(|row| row.iter().flat_map(move |i| row.iter().map(move |j| (i, j)))).map(place);
+    let pairs = pairs.collect();
+    Ok((pattern, pairs))
+}
+
+/// Adds the stiffness of the cells of a solid at some damage.
+///
+/// - `pairs`: place of the block of every pair of nodes of every cell
+pub(super) fn add_cells<const B: usize>(
+    matrix: &mut BlockMatrix<B>,
+    pairs: &[u32],
+    solid: &Solid,
+    damage: &CellDamage,
+) {
+    solid.for_each_cell(damage, |cell| {
+        let mut place = pairs[cell.first_pair..].iter();
+        for gi in cell.gradients {
+            for (gj, &place) in cell.gradients.iter().zip(&mut place) {
+                let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
+                let block = std::array::from_fn(|a| {
+                    std::array::from_fn(|b| {
+                        let diagonal = if a == b { dot } else { 0.0 };
+                        cell.lambda * gi[a] * gj[b] + cell.mu * (gi[b] * gj[a] + diagonal)
+                    })
+                });
+                matrix.add_at(place as usize, block);
+            }
+        }
+    });
 }
 
 enum Method<const B: usize> {
@@ -78,29 +136,12 @@ impl<const B: usize> System<B> {
         touching: &[[u32; 2]],
     ) -> Result<Self, SparseError> {
         let nodes = solid.reference.len();
-        let cells = solid.cell_nodes();
-        let cliques = cells.rows().chain(touching.iter().map(|pair| &pair[..]));
-        let pattern = Arc::new(Pattern::from_cliques(nodes, &Ragged::from_rows(cliques)));
-        if pattern.blocks() > u32::MAX as usize {
-            return Err(SparseError::TooLarge { entries: pattern.blocks() });
-        }
-        let place = |(&i, &j): (&u32, &u32)| pattern.place(i as usize, j as usize) as u32;
-        let pairs =
-            cells.rows().flat_map(|row| row.iter().flat_map(move |i| row.iter().map(move |j| (i, j)))).map(place);
-        let pairs = pairs.collect();
+        let (pattern, pairs) = lay_out(solid, nodes, touching)?;
         let places: Vec<[f64; 3]> = solid.reference.iter().map(|&p| p.into()).collect();
-        let unknowns = nodes * B;
-        let direct = match choice {
-            LinearSolver::Direct | LinearSolver::Faer => true,
-            LinearSolver::Iterative => false,
-            LinearSolver::Auto => {
-                unknowns <= DIRECT[usize::from(B == 2)] || reuse >= REUSE && unknowns <= DIRECT_IF_REUSED
-            }
-        };
-        let method = match choice {
+        let method = match settled(choice, nodes * B, B == 2, reuse) {
             LinearSolver::Faer => Method::Faer(Box::new(FaerFactor::new::<B>(&pattern, &places)?)),
-            _ if direct => Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)),
-            _ => Method::Iterative(None),
+            LinearSolver::Iterative => Method::Iterative(None),
+            LinearSolver::Direct | LinearSolver::Auto => Method::Direct(Box::new(Factor::new(&pattern, &places, B)?)),
         };
         let held = if held.is_empty() { vec![0; nodes] } else { held.to_vec() };
         let zero = vec![[0.0; B]; nodes];
@@ -147,22 +188,8 @@ impl<const B: usize> System<B> {
     fn assemble(&mut self, solid: &Solid, damage: &CellDamage, springs: &[Spring], anchored: bool) {
         self.matrix.clear();
         self.handed = None;
-        let (matrix, pairs) = (&mut self.matrix, &self.pairs);
-        solid.for_each_cell(damage, |cell| {
-            let mut place = pairs[cell.first_pair..].iter();
-            for gi in cell.gradients {
-                for (gj, &place) in cell.gradients.iter().zip(&mut place) {
-                    let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
-                    let block = std::array::from_fn(|a| {
-                        std::array::from_fn(|b| {
-                            let diagonal = if a == b { dot } else { 0.0 };
-                            cell.lambda * gi[a] * gj[b] + cell.mu * (gi[b] * gj[a] + diagonal)
-                        })
-                    });
-                    matrix.add_at(place as usize, block);
-                }
-            }
-        });
+        add_cells(&mut self.matrix, &self.pairs, solid, damage);
+        let matrix = &mut self.matrix;
         for spring in springs {
             let block = std::array::from_fn(|a| std::array::from_fn(|b| spring.stiffness[(a, b)]));
             let node = spring.node as usize;
@@ -259,39 +286,6 @@ impl<const B: usize> System<B> {
             self.handed = Some(factor);
         }
         Ok(true)
-    }
-
-    /// The lowest eigenpairs of the stiffness at this damage and the masses of the nodes.
-    ///
-    /// - `rigid`: motions without stiffness that are known
-    /// - `shift`: what is added to the stiffness, over the mass, where it is singular [1/s²]
-    pub(super) fn lowest_pairs(
-        &mut self,
-        solid: &Solid,
-        damage: &CellDamage,
-        rigid: &[Vec<Vec3>],
-        shift: f64,
-        search: Search,
-    ) -> Result<Pairs<B>, SparseError> {
-        self.assemble(solid, damage, &[], false);
-        let own = |vector: &Vec3| std::array::from_fn(|a| vector[a]);
-        let rigid: Vec<Vec<[f64; B]>> = rigid.iter().map(|motion| motion.iter().map(own).collect()).collect();
-        // A node without elements does not vibrate.
-        let stands = |node: usize| self.matrix.pattern().row(node).len() > 1;
-        let of = |node: usize, a: usize| if self.held[node] >> a & 1 == 0 { solid.mass[node] } else { 0.0 };
-        let mass: Vec<[f64; B]> = (0..self.held.len())
-            .map(|node| if stands(node) { std::array::from_fn(|a| of(node, a)) } else { [0.0; B] })
-            .collect();
-        let stiffness = self.matrix.clone();
-        self.matrix.add_diagonal(&mass, shift);
-        self.factorise()?;
-        let vibration = Vibration { stiffness: &stiffness, mass: &mass, rigid: &rigid };
-        let inverse: &mut dyn Inverse<B> = match &mut self.method {
-            Method::Direct(factor) => &mut **factor,
-            Method::Faer(factor) => &mut **factor,
-            Method::Iterative(preconditioner) => &mut **preconditioner.as_mut().expect("the matrix was prepared"),
-        };
-        Ok(lowest_pairs(vibration, inverse, search))
     }
 
     /// Entries of the factor, or of the matrix where there is none, and whether there is one.

@@ -141,7 +141,7 @@ enum Command {
     /// Write the frames of a results folder as an animated picture (APNG), which browsers play.
     #[command(after_help = help::MOVIE)]
     Movie(movie::MovieArguments),
-    /// Find the natural vibrations of the solids of a case: frequencies, shapes, and the mass that each moves.
+    /// Find the natural vibrations of the bodies of a case: frequencies, shapes, and the mass that each moves.
     #[command(after_help = help::MODES)]
     Modes(Box<modes::ModesArguments>),
     /// Fill a shape with particles and certify the packing.

@@ -1,4 +1,4 @@
-//! `fractum modes`: natural vibrations of the solids of any case.
+//! `fractum modes`: natural vibrations of the bodies of any case.
 
 use std::path::PathBuf;
 

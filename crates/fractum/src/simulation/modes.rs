@@ -1,8 +1,8 @@
 //! What a search for natural vibrations found beside them, as warnings.
 
 use fractum_output::warning::{Code, Warning};
-use fractum_scene::Modes;
 use fractum_scene::statics::modes_of;
+use fractum_scene::{Mode, Modes};
 
 use super::Simulation;
 use crate::error::Failure;
@@ -18,7 +18,8 @@ impl Simulation {
 /// What is doubtful about a body whose vibrations these are.
 fn doubts(found: &Modes) -> Vec<Warning> {
     let counted = |count: usize, what: &str| format!("{count} {what}{}", if count == 1 { "" } else { "s" });
-    let is_bonded = found.modes.iter().any(|mode| !mode.turns.is_empty());
+    let is_of = |has: fn(&Mode) -> bool| found.modes.iter().any(has);
+    let (is_bonded, is_solid) = (is_of(|mode| !mode.particles.is_empty()), is_of(|mode| !mode.shape.is_empty()));
     let mut warnings = Vec::new();
     if found.loose > 0 {
         let text = format!("{} without bonds, left out of the vibrations", counted(found.loose, "particle"));
@@ -26,13 +27,13 @@ fn doubts(found: &Modes) -> Vec<Warning> {
         warnings.push(Warning::new(Code::InPieces, "", text).remedy(remedy));
     }
     if found.pieces > 1 {
-        let what = if is_bonded { "bonded bodies" } else { "solids" };
-        let text = format!("the {what} are {} pieces that vibrate each by itself", found.pieces);
-        let remedy = if is_bonded {
-            "where they should be one, choose a higher coordination"
-        } else {
-            "where they should be one, let them share their nodes: mesh them together, or join them with mesh.join"
+        let (what, remedy) = match (is_solid, is_bonded) {
+            (true, true) => ("bodies", "tie bonded bodies to solids with [[ties]]"),
+            (false, _) => ("bonded bodies", "choose a higher coordination"),
+            (true, false) => ("solids", "let them share their nodes: mesh them together, or join them with mesh.join"),
         };
+        let text = format!("the {what} are {} pieces that vibrate each by itself", found.pieces);
+        let remedy = format!("where they should be one, {remedy}");
         warnings.push(Warning::new(Code::InPieces, "", text).remedy(remedy));
     }
     if found.rigid_motions > 0 {

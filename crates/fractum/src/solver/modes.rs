@@ -1,7 +1,7 @@
 //! Natural vibrations, shown one after the other.
 
 use fractum_output::number::quantity;
-use fractum_scene::statics::{ModesSettings, find_modes, modes_of, set_modes, show_mode};
+use fractum_scene::statics::{ModesError, ModesSettings, find_modes, modes_of, set_modes, show_mode};
 use fractum_scene::{Scene, StepError};
 
 use super::Advance;
@@ -27,7 +27,10 @@ impl ModesRun {
         let mut event = None;
         if modes_of(scene).is_none() {
             let found = phases.timed(Part::Solid, || find_modes(scene, self.settings, is_interrupted));
-            let found = found.map_err(|error| StepError::NoSolution { step, time, reason: error.to_string() })?;
+            let found = found.map_err(|error| match error {
+                ModesError::Linear(error) => StepError::NoSolution { step, time, reason: error.to_string() },
+                ModesError::Unstable { time: growth } => StepError::Buckles { growth },
+            })?;
             if is_interrupted() {
                 return Err(StepError::Interrupted { step, time });
             }
