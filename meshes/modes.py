@@ -3,7 +3,8 @@
 - `modes/ring.msh`: plane ring of radii 95 and 105 mm, 8 layers of 360 cells, each cut by one of its diagonals in turn;
 - `modes/ball.msh`: eighth of a ball of radius 0.1 m, 12 cells along its edges, each cut into six tetrahedra; `x`, `y` and `z` are its planes
   of symmetry;
-- `modes/plate.msh`: square plate of 1 x 1 x 0.1 m, 24 x 24 x 6 cells of six tetrahedra; `x_sides` and `y_sides` are its sides across x and y.
+- `modes/plate.msh`: square plate of 1 x 1 x 0.1 m, 24 x 24 x 6 cells of six tetrahedra; `x_sides` and `y_sides` are its sides across x and y;
+- `modes/strut.msh`: plane strut of 1 m x 20 mm about y = 0, 400 x 8 cells, each cut by one of its diagonals in turn; `left` and `right` are its ends.
 """
 
 from itertools import permutations, product
@@ -53,12 +54,13 @@ def write(name, points, body, elements, sides):
     low = [min(p[a] for p in points) for a in range(3)]
     high = [max(p[a] for p in points) for a in range(3)]
     box = " ".join(f"{x:.9g}" for x in low + high)
-    lines += ["$Entities", f"0 0 {len(sides)} 1" if solid else "0 0 1 0"]
+    lines += ["$Entities", f"0 0 {len(sides)} 1" if solid else f"0 {len(sides)} 1 0"]
     lines += [f"{k} {box} 1 {1 + k} 0" for k in range(1, len(sides) + 1)]
     lines += [f"1 {box} 1 1 0", "$EndEntities"]
     lines += ["$Nodes", f"1 {len(points)} 1 {len(points)}", f"{dimension} 1 0 {len(points)}"]
     lines += [str(n + 1) for n in range(len(points))] + [" ".join(f"{x:.9g}" for x in p) for p in points]
-    blocks = [(dimension, 1, 4 if solid else 2, elements)] + [(2, k + 1, 2, own) for k, own in enumerate(sides.values())]
+    kind, side = (4, 2) if solid else (2, 1)
+    blocks = [(dimension, 1, kind, elements)] + [(dimension - 1, k + 1, side, own) for k, own in enumerate(sides.values())]
     count = sum(len(own) for *_, own in blocks)
     lines += ["$EndNodes", "$Elements", f"{len(blocks)} {count} 1 {count}"]
     tag = 0
@@ -122,7 +124,25 @@ def plate(size=(1.0, 1.0, 0.1), cells=(24, 24, 6)):
     write("plate.msh", points, "plate", tetrahedra, sides)
 
 
+def strut(size=(1.0, 0.02), cells=(400, 8)):
+    def node(i, j):
+        return 1 + i + (cells[0] + 1) * j
+
+    points = [
+        (round(size[0] * i / cells[0], 9), round(size[1] * (j / cells[1] - 0.5), 9), 0.0)
+        for j, i in product(range(cells[1] + 1), range(cells[0] + 1))
+    ]
+    triangles = []
+    for j, i in product(range(cells[1]), range(cells[0])):
+        a, b, c, d = node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)
+        triangles += ((a, b, c), (a, c, d)) if (i + j) % 2 else ((a, b, d), (b, c, d))
+    ends = {"left": 0, "right": cells[0]}
+    sides = {name: [(node(i, j), node(i, j + 1)) for j in range(cells[1])] for name, i in ends.items()}
+    write("strut.msh", points, "strut", triangles, sides)
+
+
 if __name__ == "__main__":
     ring()
     ball()
     plate()
+    strut()
