@@ -82,6 +82,31 @@ fn a_pulled_bar_swings_back_and_a_pressed_one_buckles_and_both_are_told() {
 }
 
 #[test]
+fn springs_hold_a_bar_that_swings_on_them_and_dashpots_are_refused() {
+    let on = |support: &str| {
+        let supports = format!("supports = [{{ group = \"x-\", {support} }}]");
+        let line = |line: &'static str| if line.starts_with("supports") { supports.clone() } else { line.to_owned() };
+        let lines: Vec<String> = SNAP_BACK.lines().filter(|line| !line.starts_with("probes")).map(line).collect();
+        let place = Workplace::new(&lines.join("\n"));
+        let ended = place.fractum(&["modes", "case.toml", "--count", "1", "-o", "out"]);
+        (place, ended)
+    };
+    let frequency = |stiffness: &str| {
+        let (place, ended) = on(&format!("elastic = {{ normal = \"{stiffness}\", tangential = \"{stiffness}\" }}"));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let found = summary(&place, "out");
+        assert_eq!(found["modes"]["rigid_motions"], 0);
+        found["modes"]["vibrations"][0]["frequency"].as_f64().unwrap()
+    };
+    // Soft springs: four times as stiff ones swing twice as fast.
+    let ratio = frequency("4 MPa/m") / frequency("1 MPa/m");
+    assert!((ratio - 2.0).abs() < 1e-3, "{ratio}");
+    let (_, refused) = on("absorbing = true");
+    assert_eq!(refused.code, Some(1));
+    assert!(refused.stderr.contains("it damps, and natural vibrations go on"), "{}", refused.stderr);
+}
+
+#[test]
 fn what_has_no_place_among_vibrations_is_refused() {
     let loads = "loads = [{ group = \"x+\", pressure = \"1 kPa\" }]\n";
     let with_loads = SNAP_BACK.replace("fractum = 1\n", &format!("fractum = 1\n{loads}"));

@@ -55,17 +55,20 @@ impl Context<'_> {
         (SurfaceSupports::new(&absorbing, &elastic, &solid.mass), all)
     }
 
-    /// Both answer to motion.
+    /// Both answer to motion; springs have a part in natural vibrations too.
     fn check_solver(&mut self, kind: &SurfaceSupport, place: &crate::Place) {
-        let at_rest = self.case.solver.kind != SolverKind::Explicit;
+        let is_elastic = matches!(kind, SurfaceSupport::Elastic { .. });
         let only_stage = self.case.source.stage.is_empty();
-        if at_rest && (only_stage || matches!(kind, SurfaceSupport::Elastic { .. })) {
-            self.error(
-                place,
-                ": it acts in motion only",
-                "kind = \"explicit\", or stages = [...] without those at rest",
-            );
-        }
+        let (found, expected) = match self.case.solver.kind {
+            SolverKind::Explicit => return,
+            SolverKind::Modes if is_elastic => return,
+            SolverKind::Modes => (": it damps, and natural vibrations go on", "an elastic support, fix, or none"),
+            _ if only_stage || is_elastic => {
+                (": it acts in motion only", "kind = \"explicit\", or stages = [...] without those at rest")
+            }
+            _ => return,
+        };
+        self.error(place, found, expected);
     }
 
     /// Waves leave through the outer boundary: a cavity is where they come from.

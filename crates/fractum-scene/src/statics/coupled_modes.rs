@@ -8,10 +8,10 @@ use fractum_sparse::BlockMatrix;
 
 use super::LinearSolver;
 use super::bonded_modes::{beam, beams, transit_rate as rate_of_beams};
-use super::modes::{add_solids, held_axes, transit_rate};
 use super::rigid_motions::{RigidMotion, rigid_motions};
 use super::settings::ModesSettings;
 use super::slowest::{Counts, ModesError, Motion, Vibrating, size};
+use super::solid_modes::{add_solids, held_axes, transit_rate};
 use super::system::lay_out;
 use crate::modes::Modes;
 use crate::scene::Scene;

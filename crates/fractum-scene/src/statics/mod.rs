@@ -23,6 +23,7 @@ mod prestress;
 mod rigid_motions;
 mod settings;
 mod slowest;
+mod solid_modes;
 mod static_dynamic;
 mod support_check;
 mod system;
