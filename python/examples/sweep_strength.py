@@ -13,9 +13,9 @@ from stop_at_crack import write_case
 def main(folder):
     case = write_case(folder)
     vary = {"strength": ["2 MPa", "3 MPa", "4 MPa"], "solver.safety": [0.5, 0.9]}
-    table = fractum.sweep(case, vary, workers=2, set={"solver.end": "0.4 ms"}, output=folder / "runs", overwrite=True)
-    peaks = [fractum.Results(path).summary["probes"]["load"]["max"] for path in table["folder"]]
-    for strength, safety, peak in zip(table["strength"], table["solver.safety"], peaks):
+    settings = {"set": {"solver.end": "0.4 ms"}, "output": folder / "runs", "overwrite": True}
+    table = fractum.study(case, vary, workers=2, compare=["peak = max(load)"], **settings)
+    for strength, safety, peak in zip(table["strength"], table["solver.safety"], table["peak"]):
         print(f"{strength}, safety {safety}: largest load {peak:.4g} N")
     return table
 

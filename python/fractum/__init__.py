@@ -10,7 +10,7 @@ Everything is in SI units. `docs/python.md` of the repository has a recipe for e
 from ._core import __version__
 from .errors import CaseError, FractumError, MachineError, StoppedError
 from .results import Frame, Results
-from .runs import run, sweep
+from .runs import run, study, sweep
 from .simulation import Simulation
 
 __all__ = [
@@ -23,5 +23,6 @@ __all__ = [
     "StoppedError",
     "__version__",
     "run",
+    "study",
     "sweep",
 ]

@@ -1,12 +1,9 @@
 """Whole runs: one, or one for each combination of values."""
 
-import concurrent.futures
-import itertools
 import json
 from pathlib import Path
 
 from . import _core, tables
-from .errors import FractumError
 from .results import Results
 
 
@@ -55,59 +52,42 @@ def run(case, set=None, output=None, threads=None, resume=False, quiet=True, ove
     return Results(folder)
 
 
-def sweep(case, vary, workers=1, set=None, output=None, threads=1, overwrite=False):
-    """Runs a case with every combination of values; a table with a row for each run.
+def study(case, vary=None, workers=1, set=None, output=None, threads=1, overwrite=False, compare=()):
+    """Runs a case with every combination of values, as `fractum study` does; a table with a row for each run.
 
+    - `case`: a case file, a study file or a list of runs
     - `vary`: keys with their values: `{"nu": [0.1, 0.2], "materials.rock.young_modulus": ["40 GPa", "50 GPa"]}`
     - `workers`: runs at the same time, each with `threads` threads
-    - `output`: folder for the results folders of all runs; `results/sweep/<case>` by default
-    - `overwrite`: replace results of earlier runs
+    - `output`: folder of the study; `results/sweep/<case>` by default
+    - `overwrite`: run again what has finished there before
+    - `compare`: what else is compared: `["max(load)", "strength = max(load) / (10 mm * 1 m)"]`
 
-    Columns: the varied keys, `status` (`completed`, `stopped`, `failed`), `folder`, `error`, and the last value of each
-    probe. A run that fails is a row with the reason; the others go on. Ctrl-C ends all runs and raises
-    `KeyboardInterrupt`.
+    Columns: what differs from run to run, `status` (`completed`, `stopped`, `failed`), `folder`, `error`, the last value of
+    each probe, and what is compared. A run that fails is a row with the reason; the others go on. Ctrl-C ends all runs,
+    saves their states and raises `KeyboardInterrupt`; the same call goes on with them.
     """
     output = Path(output) if output is not None else Path("results/sweep") / Path(case).stem
-    keys = list(vary)
-    points = list(itertools.product(*(list(values) for values in vary.values())))
-    digits = len(str(len(points)))
-    folders = [output / f"{index:0{digits}d}" for index in range(1, len(points) + 1)]
-
-    def one(point, folder):
-        values = {**(set or {}), **dict(zip(keys, point))}
-        try:
-            return run(case, values, folder, threads, overwrite=overwrite), ""
-        except FractumError as error:
-            return (Results(folder) if (folder / "summary.json").exists() else None), str(error)
-
-    with concurrent.futures.ThreadPoolExecutor(max(1, workers)) as executor:
-        pending = [executor.submit(one, point, folder) for point, folder in zip(points, folders)]
-        try:
-            while concurrent.futures.wait(pending, timeout=0.1).not_done:
-                pass
-        except KeyboardInterrupt:
-            _end(pending)
-            raise
-    return _collect(keys, points, folders, [future.result() for future in pending])
-
-
-def _end(pending):
-    """Ends the runs of a sweep, with the state of each saved."""
-    for future in pending:
-        future.cancel()
-    _core.interrupt()
-    concurrent.futures.wait(pending)
-    _core.clear_interrupt()
-
-
-def _collect(keys, points, folders, ended):
-    """The table of a sweep."""
-    columns = {key: [point[index] for point in points] for index, key in enumerate(keys)}
-    columns["status"] = [results.summary["status"] if results else "failed" for results, _ in ended]
-    columns["folder"] = [str(folder) for folder in folders]
-    columns["error"] = [error for _, error in ended]
-    probes = [results.probes if results else {} for results, _ in ended]
-    for name in sorted({name for values in probes for name in values}):
-        found = [values.get(name) for values in probes]
-        columns[name] = [float("nan") if value is None else value for value in found]
+    vary = {str(key): {_written(value): value for value in values} for key, values in (vary or {}).items()}
+    given = overrides(set), [(key, list(values)) for key, values in vary.items()]
+    runs = _core.study(case, given, list(compare), output, (max(1, workers), threads, overwrite))
+    places = [dict(coordinates) for _, _, _, coordinates, _ in runs]
+    texts = {key: {text.strip('"'): value for text, value in values.items()} for key, values in vary.items()}
+    columns = {}
+    for axis in dict.fromkeys(axis for place in places for axis in place):
+        values = [place.get(axis, "") for place in places]
+        if axis in vary or any(value != values[0] for value in values):
+            columns[axis] = [texts.get(axis, {}).get(value, value) for value in values]
+    columns["status"] = [status for _, status, _, _, _ in runs]
+    columns["folder"] = [str(folder) for folder, _, _, _, _ in runs]
+    columns["error"] = [error for _, _, error, _, _ in runs]
+    finished = [status in ("completed", "stopped") for status in columns["status"]]
+    probes = [Results(folder).probes if has else {} for folder, has in zip(columns["folder"], finished)]
+    found = [{**last, **dict(values)} for last, (_, _, _, _, values) in zip(probes, runs)]
+    for name in sorted({name for values in found for name in values}):
+        values = [values.get(name) for values in found]
+        columns[name] = [float("nan") if value is None else value for value in values]
     return tables.table(columns)
+
+
+#: Another word for the same.
+sweep = study

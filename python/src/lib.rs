@@ -13,7 +13,12 @@ mod watch;
 
 use std::path::PathBuf;
 
-use fractum::{Options, cache_of_user};
+use fractum::study::{Folders, Settings, collect, run_all};
+use fractum::{Failure, Options, cache_of_user};
+use fractum_case::study::plan::{Variation, is_list, plan};
+use fractum_case::study::quantity::Quantity;
+use fractum_output::expectation::Comparison;
+use fractum_output::study::run::End;
 use fractum_output::summary::Status;
 use pyo3::prelude::*;
 
@@ -42,6 +47,48 @@ fn run(
     Ok((outcome.folder, outcome.summary.status == Status::Interrupted))
 }
 
+/// A run of a study: its folder, how it ended, why it failed, and what it varies and came to, each with its name.
+type Ran = (PathBuf, &'static str, String, Vec<(String, String)>, Vec<(String, f64)>);
+
+/// Does the runs of a study and writes its tables, as `fractum study` does.
+///
+/// - `vary`: keys with their values; `begin`: runs at the same time, threads of each, whether what has finished is run anew
+#[pyfunction]
+fn study(
+    py: Python<'_>,
+    case: PathBuf,
+    given: (Vec<(String, String)>, Vec<(String, Vec<String>)>),
+    compare: Vec<String>,
+    output: PathBuf,
+    begin: (usize, Option<usize>, bool),
+) -> PyResult<Vec<Ran>> {
+    let ((set, vary), (jobs, threads, anew)) = (given, begin);
+    let host = pool(py, Some(1))?;
+    let work = || -> Result<Vec<Ran>, Failure> {
+        let vary: Vec<Variation> = vary.into_iter().map(|(key, values)| Variation { key, values }).collect();
+        let mut study = plan(&case, &set, &vary)?;
+        for text in &compare {
+            study.compare.push(Quantity::parse(text).map_err(Failure::input)?);
+        }
+        let folders = if is_list(&case) { Folders::of_list(&case, Some(output)) } else { Folders::of_study(&output) };
+        let options = Options { threads, quiet: true, cache: cache_of_user(), ..Options::default() };
+        let ended = run_all(&study.runs, &folders, &Settings { jobs, anew, options });
+        let (runs, _) = collect(&study, &folders, None)?;
+        ended?;
+        let ran = runs.iter().map(|run| {
+            let error = if let End::Failed(why) = &run.end { why.clone() } else { String::new() };
+            let named = |(axis, value): (&str, &str)| (axis.to_owned(), value.to_owned());
+            let lines = run.measured().map_or(&[][..], |measured| &measured.expect);
+            let asked = lines.iter().filter(|line| line.comparison == Comparison::Nothing && !compare.is_empty());
+            let values = asked.map(|line| (line.quantity.clone(), line.value)).collect();
+            let folder = folders.tables.join(&run.folder);
+            (folder, run.status(), error, run.planned.coordinates().map(named).collect(), values)
+        });
+        Ok(ran.collect())
+    };
+    watch(py, &host, work)?.map_err(|failure| raise(py, &failure))
+}
+
 /// Asks all runs of this process to save their state and end.
 #[pyfunction]
 fn interrupt() {
@@ -59,6 +106,7 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<Core>()?;
     module.add_function(wrap_pyfunction!(run, module)?)?;
+    module.add_function(wrap_pyfunction!(study, module)?)?;
     module.add_function(wrap_pyfunction!(interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(clear_interrupt, module)?)
 }

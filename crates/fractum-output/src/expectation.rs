@@ -40,6 +40,8 @@ pub enum Comparison {
     Above,
     /// The reference is the middle between two limits, which are the tolerance away.
     Between,
+    /// There is no reference: the value is one of many runs that are compared with each other.
+    Nothing,
 }
 
 /// One `[[expect]]` of the case against the run.
@@ -94,7 +96,7 @@ impl Expectation {
         };
         let pass = match comparison {
             Comparison::Relative | Comparison::Absolute => error.abs() <= tolerance,
-            Comparison::Below | Comparison::Above | Comparison::Between => error == 0.0,
+            Comparison::Below | Comparison::Above | Comparison::Between | Comparison::Nothing => error == 0.0,
         };
         Self {
             quantity: name.into(),
@@ -110,6 +112,22 @@ impl Expectation {
         }
     }
 
+    /// A value that has no reference.
+    pub fn without_reference(name: &str, unit: &str, value: f64) -> Self {
+        let nothing = f64::NAN;
+        Self {
+            quantity: name.into(),
+            unit: unit.into(),
+            value,
+            reference: nothing,
+            comparison: Comparison::Nothing,
+            error: nothing,
+            tolerance: nothing,
+            pass: true,
+            source: String::new(),
+        }
+    }
+
     /// What was asked for, in words: `50 MPa ± 5 %`, `below 0.001`.
     pub fn required(&self) -> String {
         let Expectation { reference, tolerance, .. } = *self;
@@ -120,6 +138,7 @@ impl Expectation {
             Comparison::Below => format!("below {}", shown(reference)),
             Comparison::Above => format!("above {}", shown(reference)),
             Comparison::Between => format!("{} to {}", shown(reference - tolerance), shown(reference + tolerance)),
+            Comparison::Nothing => String::new(),
         }
     }
 
@@ -128,6 +147,7 @@ impl Expectation {
         match self.comparison {
             Comparison::Relative => percent(self.error),
             Comparison::Below | Comparison::Above | Comparison::Between if self.error == 0.0 => String::new(),
+            Comparison::Nothing => String::new(),
             _ => quantity(self.error, &self.unit),
         }
     }

@@ -294,6 +294,15 @@ impl Summary {
         json(self)
     }
 
+    /// The number under a dotted path, such as `energy.residual_max_relative`; NaN where there is none.
+    pub fn number(&self, path: &str) -> f64 {
+        let json = serde_json::to_value(self).unwrap_or_default();
+        path.split('.')
+            .try_fold(&json, |value, key| value.get(key))
+            .and_then(serde_json::Value::as_f64)
+            .unwrap_or(f64::NAN)
+    }
+
     /// Reads a `summary.json`.
     ///
     /// # Errors

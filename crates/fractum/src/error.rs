@@ -34,6 +34,9 @@ pub enum Failure {
         /// Results folder, and which state was saved last.
         saved: String,
     },
+    /// The run has stopped itself before, with this case, mesh and program.
+    #[error("{0}; --anew runs it again")]
+    StoppedBefore(String),
     /// The run was asked to take warnings for errors, and met one.
     #[error("{warning}; last good state saved in {saved}")]
     Strict {
@@ -104,7 +107,7 @@ impl Failure {
             Failure::Input(_) | Failure::Unmet(_) => ExitCode::Input,
             #[cfg(feature = "report")]
             Failure::Picture(_) => ExitCode::Input,
-            Failure::Stopped { .. } | Failure::Strict { .. } => ExitCode::Stopped,
+            Failure::Stopped { .. } | Failure::StoppedBefore(_) | Failure::Strict { .. } => ExitCode::Stopped,
             Failure::Elsewhere(code) => *code,
             Failure::Interrupted => ExitCode::Interrupted,
             Failure::Write(WriteError::Busy { .. }) => ExitCode::Input,

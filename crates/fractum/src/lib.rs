@@ -6,7 +6,7 @@
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
 //! - [`stress`]: random scenes of every kind of body
-//! - [`study`]: many runs, and what they say together; [`study::sweep`]: runs of a list, each started by itself
+//! - [`study`]: many runs of a list, done here or one by one, and what they came to side by side
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!

@@ -30,7 +30,6 @@ mod stages;
 mod static_frames;
 mod stress;
 mod study;
-mod sweep;
 mod terminal;
 mod tied;
 mod told;

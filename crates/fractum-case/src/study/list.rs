@@ -1,75 +1,18 @@
-//! A list of runs as a CSV file, which job schedulers and workflow programs work through run by run.
-//!
-//! ```csv
-//! run,case,solver.safety,velocity
-//! 1,case.toml,0.5,2 mm/s
-//! 2,case.toml,0.9,2 mm/s
-//! ```
-//!
-//! `run` names the results folder, `case` is taken from the folder of the list, and every further column is a parameter or
-//! dotted key. An empty cell leaves the key as the case has it. Any program may write such a list.
+//! Reads a list of runs: the CSV file that `fractum study list` or any other program writes.
 
-use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use fractum_output::history::quoted;
+use fractum_output::study::list::{FIRST, LABELS};
+use fractum_output::study::run::Planned;
 
-use super::plan::Study;
 use crate::{Diagnostic, Diagnostics, Place, refuse_endless};
-
-/// A run of a list.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Listed {
-    /// Name, and that of its results folder.
-    pub name: String,
-    /// Case file.
-    pub case: PathBuf,
-    /// Keys and values, as `--set` takes them.
-    pub overrides: Vec<(String, String)>,
-}
-
-/// The columns before the keys.
-const FIRST: [&str; 2] = ["run", "case"];
-
-/// The runs of a study under their numbers, which have the same number of digits.
-pub fn of_study(study: &Study) -> Vec<Listed> {
-    let digits = study.runs.len().to_string().len();
-    let listed = study.runs.iter().zip(1..).map(|(run, number)| Listed {
-        name: format!("{number:0digits$}"),
-        case: run.case.clone(),
-        overrides: run.overrides.clone(),
-    });
-    listed.collect()
-}
-
-/// The file that lists these runs.
-pub fn to_csv(runs: &[Listed]) -> String {
-    let keys = keys(runs);
-    let mut lines = vec![FIRST.iter().copied().chain(keys.iter().copied()).map(quoted).collect::<Vec<_>>().join(",")];
-    for run in runs {
-        let case = run.case.to_string_lossy();
-        let mut cells = vec![quoted(&run.name), quoted(&case)];
-        // The last of several values counts, as it does on the command line.
-        let value = |key: &str| run.overrides.iter().rev().find(|(name, _)| name == key).map_or("", |(_, value)| value);
-        cells.extend(keys.iter().map(|key| quoted(value(key))));
-        lines.push(cells.join(","));
-    }
-    lines.join("\n") + "\n"
-}
-
-/// The keys that some run sets, in the order in which they come first.
-pub fn keys(runs: &[Listed]) -> Vec<&str> {
-    let mut seen = BTreeSet::new();
-    let all = runs.iter().flat_map(|run| &run.overrides).map(|(name, _)| name.as_str());
-    all.filter(|name| seen.insert(*name)).collect()
-}
 
 /// Reads a list of runs.
 ///
 /// # Errors
 /// The first mistake with its line.
-pub fn read(path: &Path) -> Result<Vec<Listed>, Diagnostics> {
+pub fn read(path: &Path) -> Result<Vec<Planned>, Diagnostics> {
     let place = |line: usize| Place {
         file: path.display().to_string(),
         line: line as u32,
@@ -83,11 +26,11 @@ pub fn read(path: &Path) -> Result<Vec<Listed>, Diagnostics> {
     let text = fs::read_to_string(path).map_err(|error| wrong(0, format!("cannot be read: {error}"), ""))?;
     let mut rows = parse(&text).map_err(|line| wrong(line, ": a quote is not closed".into(), ""))?.into_iter();
     let Some((_, header)) = rows.next().filter(|(_, header)| header.starts_with(&FIRST.map(String::from))) else {
-        let remedy = "fractum sweep list CASE --vary KEY=a,b,c writes a list";
+        let remedy = "fractum study list CASE --vary KEY=a,b,c writes a list";
         return Err(wrong(1, ": the first columns are not run,case".into(), remedy));
     };
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut runs: Vec<Listed> = Vec::new();
+    let mut runs: Vec<Planned> = Vec::new();
     for (line, cells) in rows {
         if cells.len() != header.len() {
             let found = format!(": {} cells under {} columns", cells.len(), header.len());
@@ -98,12 +41,21 @@ pub fn read(path: &Path) -> Result<Vec<Listed>, Diagnostics> {
             let remedy = "use letters, digits, dots, hyphens and underscores, at first a letter or digit";
             return Err(wrong(line, format!(": run \"{name}\" cannot be the name of a folder"), remedy));
         }
-        if runs.iter().any(|run| run.name == *name) {
-            return Err(wrong(line, format!(": run \"{name}\" stands there twice"), "give each run a name of its own"));
+        let mut run = Planned { name: name.clone(), case: folder.join(&cells[1]), ..Planned::default() };
+        for (key, value) in header.iter().zip(cells).skip(FIRST.len()).filter(|(_, value)| !value.is_empty()) {
+            match LABELS.iter().position(|(label, _)| label == key) {
+                Some(0) => run.family = value,
+                Some(_) => run.setting = value,
+                None => run.overrides.push((key.clone(), value)),
+            }
         }
-        let set = header.iter().zip(&cells).skip(FIRST.len()).filter(|(_, value)| !value.is_empty());
-        let overrides = set.map(|(key, value)| (key.clone(), value.clone())).collect();
-        runs.push(Listed { name: name.clone(), case: folder.join(&cells[1]), overrides });
+        // Runs that are the same in two families are done once.
+        let other = |own: &Planned| own.name == run.name && (&own.case, &own.overrides) != (&run.case, &run.overrides);
+        if runs.iter().any(other) {
+            let found = format!(": run \"{}\" stands there twice, with other values", run.name);
+            return Err(wrong(line, found, "give each run a name of its own"));
+        }
+        runs.push(run);
     }
     Ok(runs)
 }
@@ -147,29 +99,35 @@ fn parse(text: &str) -> Result<Vec<(usize, Vec<String>)>, usize> {
 
 #[cfg(test)]
 mod tests {
+    use fractum_output::study::list::to_csv;
+
     use super::*;
 
-    fn listed(name: &str, overrides: &[(&str, &str)]) -> Listed {
+    fn listed(name: &str, overrides: &[(&str, &str)]) -> Planned {
         let overrides = overrides.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-        Listed { name: name.into(), case: "case.toml".into(), overrides }
+        Planned { name: name.into(), case: "case.toml".into(), overrides, ..Planned::default() }
     }
 
     #[test]
     fn a_list_reads_back_as_it_was_written() {
-        let runs = [
+        let mut runs = vec![
             listed("1", &[("point", "[1, 2]"), ("text", "a \"quoted\" word\nand a line")]),
             listed("2", &[("speed", "2 mm/s"), ("text", " ")]),
         ];
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("runs.csv");
-        fs::write(&path, to_csv(&runs)).unwrap();
-        let mut read_back = read(&path).unwrap();
-        assert!(read_back.iter().all(|run| run.case == folder.path().join("case.toml")));
-        read_back.iter_mut().for_each(|run| run.case = "case.toml".into());
-        let mut sorted = runs.to_vec();
-        sorted[1].overrides.swap(0, 1); // in the order of the columns
-        assert_eq!(read_back, sorted);
-        assert_eq!(to_csv(&runs).lines().next(), Some("run,case,point,text,speed"));
+        let text = |runs: &[Planned]| to_csv(&runs.iter().collect::<Vec<_>>());
+        for first in ["run,case,point,text,speed", "run,case,[setting],point,text,speed"] {
+            assert_eq!(text(&runs).lines().next(), Some(first));
+            fs::write(&path, text(&runs)).unwrap();
+            let mut read_back = read(&path).unwrap();
+            assert!(read_back.iter().all(|run| run.case == folder.path().join("case.toml")));
+            read_back.iter_mut().for_each(|run| run.case = "case.toml".into());
+            let mut sorted = runs.clone();
+            sorted[1].overrides.swap(0, 1); // in the order of the columns
+            assert_eq!(read_back, sorted);
+            runs[0].setting = "local".into();
+        }
     }
 
     #[test]
@@ -183,7 +141,7 @@ mod tests {
         assert!(said("a,b\n1,2\n").contains("runs.csv:1") && said("").contains("not run,case"));
         assert!(said("run,case,k\r\n1,c.toml,1\r\n\r\n2,c.toml\r\n").contains("runs.csv:4"));
         assert!(said("run,case\n../1,c.toml\n").contains("cannot be the name of a folder"));
-        assert!(said("run,case\n1,c.toml\n1,c.toml\n").contains("stands there twice"));
+        assert!(said("run,case\n1,c.toml\n1,d.toml\n").contains("stands there twice"));
         assert!(said("run,case,k\n1,c.toml,\"1\n2,c.toml,3\n").contains("runs.csv:2"));
     }
 }

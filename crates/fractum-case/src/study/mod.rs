@@ -1,7 +1,9 @@
 //! Studies: many runs of one case or of several.
 //!
-//! - [`list`] is a table of runs for programs that start them
-//! - [`plan`] says what to run: the product of varied keys, from the command line or from a study file
+//! - [`plan`] says what to run: the product of varied keys, from the command line or from a study file, or a list
+//! - [`list`] reads a list of runs
+//! - [`quantity`] is what runs are compared by beside their references
 
 pub mod list;
 pub mod plan;
+pub mod quantity;

@@ -19,12 +19,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use fractum_output::study::run::{CASE, Planned, SETTING};
+use fractum_output::study::run::Planned;
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
+use xxhash_rust::xxh3::xxh3_64;
 
+use super::list;
+use super::quantity::Quantity;
 use crate::{Diagnostic, Diagnostics, Dimension, Place, nearest, parse_quantity, place_of, refuse_endless};
 
 /// The version of the study format this reads.
@@ -40,6 +43,8 @@ pub struct Study {
     pub title: String,
     /// Error within which the cheapest setting is sought [-].
     pub within: Option<f64>,
+    /// What is compared beside the references.
+    pub compare: Vec<Quantity>,
     /// The runs, in the order in which they stand in tables.
     pub runs: Vec<Planned>,
 }
@@ -89,7 +94,7 @@ impl Variation {
     }
 }
 
-/// The study of a case file, or the one that a study file describes.
+/// The study of a case file, of a list of runs, or the one that a study file describes.
 ///
 /// - `set`: what all runs have, as `--set` takes it
 /// - `vary`: what is varied in all of them
@@ -100,24 +105,76 @@ pub fn plan(path: &Path, set: &[(String, String)], vary: &[Variation]) -> Result
     let file = path.display().to_string();
     let whole = Place { file: file.clone(), line: 0, column: 0, key: String::new() };
     let fail = |found: String| Diagnostics(vec![Diagnostic::error(&whole, found)]);
+    if is_list(path) {
+        if !set.is_empty() || !vary.is_empty() {
+            return Err(fail("is a list, which says itself what each run sets; leave out --set and --vary".into()));
+        }
+        return of_list(path);
+    }
     refuse_endless(path).map_err(&fail)?;
     let text = fs::read_to_string(path).map_err(|error| fail(format!("cannot be read: {error}")))?;
     let mut study = if is_study(path, &text) {
         read(&text, path)?
     } else {
-        let case = Planned {
-            family: label(path),
-            coordinates: vec![(CASE.into(), label(path))],
-            case: path.to_owned(),
-            overrides: Vec::new(),
-        };
+        let case = Planned { family: label(path), case: path.to_owned(), ..Planned::default() };
         Study { runs: vec![case], ..Study::default() }
     };
     for run in &mut study.runs {
         run.overrides.splice(0..0, set.iter().cloned());
     }
-    study.runs = product(study.runs, vary).map_err(fail)?;
+    study.runs = named(product(study.runs, vary).map_err(fail)?);
     Ok(study)
+}
+
+/// Gives runs their names and labels.
+pub fn named(mut runs: Vec<Planned>) -> Vec<Planned> {
+    label_cases(&mut runs);
+    runs.iter_mut().for_each(|run| run.name = name_of(run));
+    runs
+}
+
+/// The study of a list of runs.
+///
+/// # Errors
+/// As [`list::read`].
+pub fn of_list(path: &Path) -> Result<Study, Diagnostics> {
+    let mut runs = list::read(path)?;
+    runs.iter_mut().filter(|run| run.family.is_empty()).for_each(|run| run.family = label(path));
+    label_cases(&mut runs);
+    Ok(Study { runs, ..Study::default() })
+}
+
+/// Whether a file is a list of runs.
+pub fn is_list(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+}
+
+/// A name by which a run is found again whatever stands beside it: `tilt-10-` and a hash of its case and what it sets.
+fn name_of(run: &Planned) -> String {
+    let mut text = run.case.to_string_lossy().into_owned();
+    run.overrides.iter().for_each(|(key, value)| text += &format!("\0{key}\0{value}"));
+    let plain = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    format!("{}-{:016x}", label(&run.case).chars().map(plain).collect::<String>(), xxh3_64(text.as_bytes()))
+}
+
+/// Names the cases so that they are told apart: by their files where these differ, else with their folders too.
+fn label_cases(runs: &mut [Planned]) {
+    let whole = |case: &Path| case.with_extension("").to_string_lossy().into_owned();
+    let short = |case: &Path| {
+        let parts: Vec<_> = case.iter().rev().take(2).collect();
+        Path::new(parts.last().copied().unwrap_or_default()).join(label(case)).to_string_lossy().into_owned()
+    };
+    let cases: BTreeSet<PathBuf> = runs.iter().map(|run| run.case.clone()).collect();
+    let alone =
+        |of: &dyn Fn(&Path) -> String, case: &Path| cases.iter().filter(|other| of(other) == of(case)).count() == 1;
+    for run in runs {
+        let case = &run.case;
+        run.case_label = match () {
+            () if alone(&label, case) => label(case),
+            () if alone(&short, case) => short(case),
+            () => whole(case),
+        };
+    }
 }
 
 /// Whether a file is a study rather than a case.
@@ -138,7 +195,6 @@ fn product(runs: Vec<Planned>, vary: &[Variation]) -> Result<Vec<Planned>, Strin
             // What is varied replaces what was fixed.
             run.overrides.retain(|(name, _)| name != key);
             run.overrides.push((key.clone(), value.clone()));
-            run.coordinates.push((key.clone(), value.trim_matches('"').to_owned()));
             run
         };
         all = all.iter().flat_map(|run| values.iter().map(|value| with(run, value))).collect();
@@ -153,6 +209,8 @@ struct StudyFile {
     #[serde(default)]
     title: String,
     within: Option<Spanned<String>>,
+    #[serde(default)]
+    compare: Vec<Spanned<String>>,
     #[serde(default)]
     settings: Vec<Setting>,
     families: Vec<Family>,
@@ -201,6 +259,12 @@ fn read(text: &str, path: &Path) -> Result<Study, Diagnostics> {
         match parse_share(&text) {
             Ok(share) => study.within = Some(share),
             Err(found) => note(at, format!("within: {found}"), ""),
+        }
+    }
+    for text in parsed.compare {
+        match Quantity::parse(text.get_ref()) {
+            Ok(quantity) => study.compare.push(quantity),
+            Err(found) => note(text.span().start, format!("compare: {found}"), ""),
         }
     }
     let labels: Vec<&str> = parsed.settings.iter().map(|setting| setting.label.get_ref().as_str()).collect();
@@ -263,30 +327,22 @@ fn runs(family: &Family, settings: &[Setting], folder: &Path) -> Vec<Planned> {
         some => some.iter().filter(wanted).map(Some).collect(),
     };
     let mut runs = Vec::new();
-    for case in case_labels(&family.cases) {
+    for case in &family.cases {
         for setting in &settings {
-            let mut coordinates = vec![(CASE.to_owned(), case.1.clone())];
-            let mut overrides: Vec<(String, String)> = pairs(&family.set);
+            let mut run = Planned {
+                family: family.label.get_ref().clone(),
+                case: folder.join(case.get_ref()),
+                overrides: pairs(&family.set),
+                ..Planned::default()
+            };
             if let Some(setting) = setting {
-                coordinates.push((SETTING.to_owned(), setting.label.get_ref().clone()));
-                overrides.extend(pairs(&setting.set));
+                run.setting.clone_from(setting.label.get_ref());
+                run.overrides.extend(pairs(&setting.set));
             }
-            let case = folder.join(case.0);
-            runs.push(Planned { family: family.label.get_ref().clone(), coordinates, case, overrides });
+            runs.push(run);
         }
     }
     runs
-}
-
-/// Cases with names that tell them apart: those of their files where these differ, else their paths.
-fn case_labels(cases: &[Spanned<String>]) -> Vec<(&str, String)> {
-    let paths: Vec<&str> = cases.iter().map(|case| case.get_ref().as_str()).collect();
-    let stems: Vec<String> = paths.iter().map(|path| label(Path::new(path))).collect();
-    let name = |index: usize| {
-        let alike = stems.iter().filter(|stem| **stem == stems[index]).count();
-        if alike > 1 { paths[index].to_owned() } else { stems[index].clone() }
-    };
-    (0..paths.len()).map(|index| (paths[index], name(index))).collect()
 }
 
 fn label(path: &Path) -> String {
@@ -326,7 +382,6 @@ mod tests {
         assert_eq!(runs.len(), 6);
         let pair = |key: &str, value: &str| (key.to_owned(), value.to_owned());
         assert_eq!(runs[5].overrides, [pair("c", "7"), pair("a", "2"), pair("b", "z")]);
-        assert_eq!(runs[5].coordinates, [pair("a", "2"), pair("b", "z")]);
         let values = (0..200).map(|value| value.to_string()).collect();
         let many = Variation { key: "k".into(), values };
         assert!(product(vec![fixed], &[many.clone(), Variation { key: "l".into(), ..many }]).is_err());

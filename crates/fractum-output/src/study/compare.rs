@@ -105,6 +105,7 @@ fn severity(line: &Expectation) -> f64 {
         Comparison::Below => line.value,
         Comparison::Above => -line.value,
         Comparison::Between => (line.value - line.reference).abs(),
+        Comparison::Nothing => 0.0,
     }
 }
 
@@ -119,11 +120,18 @@ pub fn families(runs: &[Run]) -> Vec<Family<'_>> {
     let family = |label| {
         let runs: Vec<&Run> = runs.iter().filter(|run| run.planned.family == label).collect();
         let mut names: Vec<&str> = Vec::new();
-        for (name, _) in runs.iter().flat_map(|run| &run.planned.coordinates) {
-            if !names.contains(&name.as_str()) && runs.iter().any(|run| run.on(name) != runs[0].on(name)) {
+        for (name, _) in runs.iter().flat_map(|run| run.planned.coordinates()) {
+            if !names.contains(&name) && runs.iter().any(|run| run.on(name) != runs[0].on(name)) {
                 names.push(name);
             }
         }
+        // What a setting sets is told by its label.
+        let follows = |name: &str| {
+            let same = |a: &Run, b: &Run| a.on(SETTING) != b.on(SETTING) || a.on(name) == b.on(name);
+            names.contains(&SETTING) && runs.iter().all(|a| runs.iter().all(|b| same(a, b)))
+        };
+        let names: Vec<&str> =
+            names.iter().copied().filter(|name| [CASE, SETTING].contains(name) || !follows(name)).collect();
         let mut family = Family { label, runs, axes: Vec::new() };
         family.axes = names.iter().map(|name| (*name, family.varies(&names, name))).collect();
         family
@@ -349,8 +357,14 @@ mod tests {
             Expectation::hold("share", "", 0.5, limit, ""),
         ];
         let measured = Measured { size, wall: 9.0, processor: Some(seconds), expect, ..Measured::default() };
-        let coordinates = at.iter().map(|(axis, value)| (axis.to_string(), value.to_string())).collect();
-        let planned = Planned { family: "disc".into(), coordinates, ..Planned::default() };
+        let mut planned = Planned { family: "disc".into(), ..Planned::default() };
+        for (axis, value) in at {
+            match *axis {
+                CASE => planned.case_label = value.to_string(),
+                SETTING => planned.setting = value.to_string(),
+                key => planned.overrides.push((key.to_owned(), value.to_string())),
+            }
+        }
         Run { planned, end: End::Finished(Box::new(measured)), ..Run::default() }
     }
 

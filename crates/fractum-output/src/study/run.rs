@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::expectation::{Comparison, Expectation};
 use crate::number::or_null;
+use crate::summary::{Status, Summary};
 
 /// Name of the axis of case files.
 pub const CASE: &str = "case";
@@ -13,17 +14,35 @@ pub const CASE: &str = "case";
 /// Name of the axis of the labelled settings of a study file.
 pub const SETTING: &str = "setting";
 
-/// One run of a study.
+/// One run of a study: a line of its list.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Planned {
+    /// Name, and that of its results folder.
+    pub name: String,
     /// The cases that it is compared with.
     pub family: String,
-    /// What sets it apart within its family: axis and value, as case and setting or a varied key.
-    pub coordinates: Vec<(String, String)>,
+    /// Its case in a word, for tables.
+    pub case_label: String,
+    /// Label of what it sets together; empty where it has none.
+    pub setting: String,
     /// Case file.
     pub case: PathBuf,
     /// Keys and values, as `--set` takes them.
     pub overrides: Vec<(String, String)>,
+}
+
+impl Planned {
+    /// What sets it apart within its family: axis and value.
+    pub fn coordinates(&self) -> impl Iterator<Item = (&str, &str)> {
+        let labels = [(CASE, self.case_label.as_str()), (SETTING, self.setting.as_str())];
+        let keys = self.overrides.iter().map(|(key, value)| (key.as_str(), value.trim_matches('"')));
+        labels.into_iter().filter(|(_, label)| !label.is_empty()).chain(keys)
+    }
+
+    /// Its value on an axis of its family; empty where it has none. The last of several values counts, as on the command line.
+    pub fn on(&self, axis: &str) -> &str {
+        self.coordinates().filter(|(name, _)| *name == axis).last().map_or("", |(_, value)| value)
+    }
 }
 
 /// A run of a study with its end.
@@ -31,10 +50,12 @@ pub struct Planned {
 pub struct Run {
     /// What was to be run.
     pub planned: Planned,
-    /// Results folder, from the folder of the study.
+    /// Results folder, from the folder of the tables.
     pub folder: PathBuf,
     /// What came of it.
     pub end: End,
+    /// Its summary, if it has left one.
+    pub summary: Option<Box<Summary>>,
 }
 
 /// How a run of a study ended.
@@ -67,7 +88,7 @@ pub struct Measured {
     pub wall: f64,
     /// Time of the processor, summed over threads [s]; absent where the system does not tell it.
     pub processor: Option<f64>,
-    /// The references of the case, with errors.
+    /// The references of the case with their errors, and what is compared without a reference.
     pub expect: Vec<Expectation>,
 }
 
@@ -86,11 +107,16 @@ impl Measured {
 
     /// Whether there are references and all are met, relative ones within `share` instead of their own tolerance.
     pub fn is_within(&self, share: f64) -> bool {
-        !self.expect.is_empty()
-            && self.expect.iter().all(|line| match line.comparison {
+        self.references().next().is_some()
+            && self.references().all(|line| match line.comparison {
                 Comparison::Relative => line.error.abs() <= share,
                 _ => line.pass,
             })
+    }
+
+    /// The lines that have a reference.
+    pub fn references(&self) -> impl Iterator<Item = &Expectation> {
+        self.expect.iter().filter(|line| line.comparison != Comparison::Nothing)
     }
 }
 
@@ -103,9 +129,19 @@ impl Run {
         }
     }
 
-    /// Its value on an axis of its family; empty where it has none.
+    /// As [`Planned::on`].
     pub fn on(&self, axis: &str) -> &str {
-        let found = self.planned.coordinates.iter().find(|(name, _)| name == axis);
-        found.map_or("", |(_, value)| value)
+        self.planned.on(axis)
+    }
+
+    /// How it ended, in a word: that of its summary, `failed` where it was refused, `missing` where it has left nothing.
+    pub fn status(&self) -> &'static str {
+        match (&self.end, self.summary.as_ref().map(|summary| summary.status)) {
+            (_, Some(Status::Stopped)) => "stopped",
+            (End::Failed(_), _) => "failed",
+            (End::Finished(_), _) => "completed",
+            (End::Open, Some(Status::Interrupted)) => "interrupted",
+            (End::Open, _) => "missing",
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::{Value, json};
 
 use super::compare::{Family, Varies, Verdict};
-use super::run::{End, Run};
+use super::run::{End, Measured, Run};
 use crate::expectation::{Comparison, Expectation};
 use crate::history::quoted;
 use crate::number::{percent, push_shortest, quantity, significant};
@@ -50,6 +50,7 @@ impl Table {
 fn cell(line: &Expectation) -> String {
     let missed = if line.pass { "" } else { " !" };
     match line.comparison {
+        Comparison::Nothing if line.value.is_nan() => String::new(),
         Comparison::Relative => {
             // Rounding is no error.
             let error = if line.error.abs() < 1e-9 { 0.0 } else { line.error };
@@ -66,6 +67,14 @@ fn seconds(value: f64) -> String {
 
 fn column(name: &str) -> String {
     name.replace('_', " ").trim_start_matches("probes.").to_owned()
+}
+
+/// The quantities of a family that have a reference.
+fn referenced<'a>(family: &Family<'a>) -> Vec<&'a str> {
+    let mut names = family.quantities();
+    let has = |name: &str, measured: &Measured| measured.references().any(|line| line.quantity == name);
+    names.retain(|name| family.runs.iter().filter_map(|run| run.measured()).any(|measured| has(name, measured)));
+    names
 }
 
 /// All runs of a family with their errors.
@@ -111,7 +120,7 @@ fn settings_of(family: &Family<'_>) -> Option<Table> {
     if verdicts.len() < 2 || !several {
         return None;
     }
-    let quantities = family.quantities();
+    let quantities = referenced(family);
     let mut header: Vec<String> = ["setting", "runs"].map(String::from).into();
     header.extend(quantities.iter().map(|name| format!("{}, worst", column(name))));
     header.extend(["references met", "run time"].map(String::from));
@@ -126,7 +135,7 @@ fn settings_of(family: &Family<'_>) -> Option<Table> {
         row.extend(quantities.iter().map(worst));
         let (met, of) = verdict
             .measured()
-            .flat_map(|run| &run.expect)
+            .flat_map(Measured::references)
             .fold((0, 0), |(met, of), line| (met + usize::from(line.pass), of + 1));
         row.extend([format!("{met} of {of}"), seconds(verdict.seconds())]);
         row.push(verdict.time_ratio.map_or(String::new(), |ratio| significant(ratio, 3)));
@@ -156,7 +165,7 @@ pub fn findings(families: &[Family<'_>], within: Option<f64>) -> Vec<String> {
                 scatter.seeds
             ));
         }
-        if let Some(share) = within {
+        if let Some(share) = within.filter(|_| !referenced(family).is_empty()) {
             lines.extend(cheapest(family, share));
         }
     }
@@ -212,7 +221,7 @@ pub fn to_csv(runs: &[Run]) -> String {
         "family,run,status,folder,size [m],elements,particles,steps,wall [s],processor [s],quantity,unit,value,reference,comparison,error,tolerance,pass\n",
     );
     for run in runs {
-        let words = run.planned.coordinates.iter().map(|(axis, value)| format!("{axis}={value}"));
+        let words = run.planned.coordinates().map(|(axis, value)| format!("{axis}={value}"));
         let name = words.collect::<Vec<_>>().join("; ");
         let status = status(&run.end);
         let folder = run.folder.display().to_string();
@@ -261,7 +270,7 @@ pub fn to_json(title: &str, families: &[Family<'_>], within: Option<f64>) -> Str
     let number = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
     let run = |run: &&Run| {
         let at: serde_json::Map<String, Value> =
-            run.planned.coordinates.iter().map(|(axis, value)| (axis.clone(), json!(value))).collect();
+            run.planned.coordinates().map(|(axis, value)| (axis.to_owned(), json!(value))).collect();
         let why = if let End::Failed(why) = &run.end { json!(why) } else { Value::Null };
         let case = run.planned.case.display().to_string();
         json!({ "at": at, "case": case, "set": run.planned.overrides, "folder": run.folder, "status": status(&run.end), "reason": why, "result": run.measured() })

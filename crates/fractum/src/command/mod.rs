@@ -19,7 +19,6 @@ mod pack;
 mod ranks;
 mod shape;
 mod study;
-mod sweep;
 
 use std::path::PathBuf;
 
@@ -121,13 +120,9 @@ enum Command {
         #[arg(long, default_value_t = 1, requires = "stress")]
         seed: u64,
     },
-    /// Run a case with varied settings, or a study of several cases, and print run time beside error.
+    /// Run a case with varied values, here or one by one on a cluster, and compare the results.
+    #[command(visible_alias = "sweep")]
     Study(Box<study::StudyArguments>),
-    /// Many runs on a cluster or by a workflow program: write their list, do one of them, collect all results.
-    Sweep {
-        #[command(subcommand)]
-        command: sweep::SweepCommand,
-    },
     /// Look at a mesh, or write it in another format.
     Mesh {
         #[command(subcommand)]
@@ -232,7 +227,6 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
             if neighbours { run_neighbours(&selection, promised) } else { run_gallery(&selection) }
         }
         Command::Study(arguments) => study::run(*arguments),
-        Command::Sweep { command } => sweep::run(command),
         Command::Mesh { command } => mesh::execute(command, json),
         Command::Report { folder } => fractum::report::write(&folder).map(|()| ExitCode::Done),
         Command::Movie(arguments) => movie::run(&arguments),

@@ -99,6 +99,16 @@ impl MeshFiles {
     }
 }
 
+/// Hash of the files of the mesh of a case, which are not read as a mesh; 0 where it has none.
+///
+/// # Errors
+/// [`Failure::Input`] for a file that cannot be read.
+pub(crate) fn mesh_hash(case: &Case) -> Result<u128, Failure> {
+    let Some(source) = &case.mesh else { return Ok(0) };
+    let hashes = source.files().into_iter().map(|file| Ok(xxh3_128(&bytes_of(source, &file)?)));
+    Ok(hash(&hashes.collect::<Result<Vec<_>, Failure>>()?))
+}
+
 /// One hash of several; that of one file is its own.
 fn hash(hashes: &[u128]) -> u128 {
     match hashes {
@@ -177,12 +187,9 @@ fn join_solids(mesh: &mut Mesh, solids: &Spanned<Vec<SolidGroup>>) -> Vec<Diagno
     warnings
 }
 
-fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(Mesh, u128), Failure> {
+fn bytes_of(source: &MeshSource, file: &Path) -> Result<Vec<u8>, Failure> {
     refuse_endless(file).map_err(|error| fail(source, format!("= \"{}\" {error}", file.display()), ""))?;
-    // The file and the mesh that is read from it, which is about as large.
-    let length = fs::metadata(file).map_or(0, |known| known.len());
-    memory::require(2 * length * processes.here as u64, format!("reading {}", file.display()))?;
-    let bytes = fs::read(file).map_err(|error| {
+    fs::read(file).map_err(|error| {
         let remedy = match error.kind() {
             std::io::ErrorKind::NotFound if source.parts.is_some() => {
                 "mesh.parts = N needs NAME_1.msh to NAME_N.msh beside each other, as Gmsh writes with -part N -part_split"
@@ -191,7 +198,15 @@ fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(
             _ => "check the file and its permissions",
         };
         fail(source, format!("= \"{}\": cannot read the mesh: {error}", file.display()), remedy)
-    })?;
+    })
+}
+
+fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(Mesh, u128), Failure> {
+    refuse_endless(file).map_err(|error| fail(source, format!("= \"{}\" {error}", file.display()), ""))?;
+    // The file and the mesh that is read from it, which is about as large.
+    let length = fs::metadata(file).map_or(0, |known| known.len());
+    memory::require(2 * length * processes.here as u64, format!("reading {}", file.display()))?;
+    let bytes = bytes_of(source, file)?;
     let cut = fractum_mesh::partitions(&bytes);
     if let (Some(cut), Some(parts)) = (cut.filter(|_| source.parts > Some(1)), source.parts)
         && cut != parts

@@ -25,6 +25,7 @@ use crate::process::ranks::Processes;
 use crate::solver::choice::choose;
 use crate::terminal::Stream;
 use memory::check_memory;
+pub(crate) use mesh_files::mesh_hash;
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {

@@ -150,13 +150,7 @@ pub(crate) fn expectation(expect: &Expect, summary: &Summary) -> Expectation {
     let name = &expect.quantity.value;
     let value = match summary.probes.get(name) {
         Some(probe) => probe.r#final,
-        None => summary_value(summary, name),
+        None => summary.number(name),
     };
     Expectation::hold(name, &expect.unit, value, expect.bound, &expect.source)
-}
-
-/// A number of the summary by its dotted path, such as `energy.residual_max_relative`.
-fn summary_value(summary: &Summary, path: &str) -> f64 {
-    let json = serde_json::to_value(summary).unwrap_or_default();
-    path.split('.').try_fold(&json, |value, key| value.get(key)).and_then(serde_json::Value::as_f64).unwrap_or(f64::NAN)
 }

@@ -1,103 +1,175 @@
-//! `fractum study`: runs the cases of a study and writes run time beside error.
+//! Many runs: a list, done here or one by one on a cluster, and one comparison of what they came to.
 //!
-//! Every run has a folder of its own below `runs`, named by the hash of its case, mesh and program; a run that has finished
-//! there is not run again. Tables and pages are made from what has finished, so that a study that was interrupted goes on.
+//! Every run has a folder of its own; one that has finished there is not run again, and one that was interrupted goes on.
+//! Tables and pages are made from what has finished.
 
-mod single;
-pub mod sweep;
+mod one;
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_case::study::plan::Study;
 use fractum_output::atomic;
-use fractum_output::number::significant;
+use fractum_output::number::{percent, significant};
 use fractum_output::study::compare::{Family, families};
-use fractum_output::study::run::{End, Run};
-use fractum_output::study::table;
-use fractum_prepare::Cache;
+use fractum_output::study::run::{End, Planned, Run};
+use fractum_output::study::{list, table};
+use fractum_output::summary::Status;
 
 use crate::error::Failure;
 use crate::process::interrupt::{UnderWay, is_interrupted};
-use crate::report;
-use crate::{say, tell};
-use single::Single;
+use crate::simulation::Options;
+use crate::{report, tell};
 
-/// How a study is run.
+/// Where the results of a study are.
+#[derive(Clone, Debug)]
+pub struct Folders {
+    /// Tables and page.
+    pub tables: PathBuf,
+    /// The folders of the runs, from that of the tables.
+    pub runs: PathBuf,
+}
+
+impl Folders {
+    /// Those of a study: tables in a folder, runs below `runs`.
+    pub fn of_study(folder: &Path) -> Self {
+        Self { tables: folder.to_owned(), runs: PathBuf::from("runs") }
+    }
+
+    /// Those of a list: `runs/` beside `runs.csv`, where nothing else is said.
+    pub fn of_list(list: &Path, results: Option<PathBuf>) -> Self {
+        Self { tables: results.unwrap_or_else(|| list.with_extension("")), runs: PathBuf::new() }
+    }
+
+    fn results(&self) -> PathBuf {
+        self.tables.join(&self.runs)
+    }
+}
+
+/// How runs are done.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Folder for runs, tables and page.
-    pub output: PathBuf,
     /// Runs at the same time.
     pub jobs: usize,
-    /// Threads per run.
-    pub threads: usize,
     /// Run anew what has finished before.
     pub anew: bool,
-    /// Only the tables of what has finished.
-    pub only_tables: bool,
-    /// Where packings and beams of bonded bodies are kept.
-    pub cache: Cache,
+    /// Threads of a run, and the cache of packings and beams.
+    pub options: Options,
 }
 
-/// Runs what has not finished yet, and writes `study.csv`, `study.json`, `study.svg`, `study.html` and the tables.
+/// Writes the list of the runs of a study; `case` in it counts from its folder.
 ///
 /// # Errors
-/// [`Failure::Write`] where something cannot be written, [`Failure::Interrupted`] after Ctrl-C, with the tables of what has
-/// finished. A run that is refused or stops itself is a line of the tables.
-pub fn study(study: &Study, settings: &Settings) -> Result<Vec<Run>, Failure> {
-    let (runs, ended) = runs(study, settings)?;
-    write(study, &runs, settings)?;
-    ended.map(|()| runs)
+/// [`Failure::Write`].
+pub fn write_list(runs: &[Planned], path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let mut runs = runs.to_vec();
+    if let Some(folder) = folder {
+        atomic::create_folder(folder)?;
+        runs.iter_mut().for_each(|run| run.case = std::path::absolute(&run.case).unwrap_or_else(|_| run.case.clone()));
+    }
+    Ok(atomic::write(path, list::to_csv(&runs.iter().collect::<Vec<_>>()).as_bytes())?)
 }
 
-/// Runs what has not finished yet: all runs, and what kept those that are open from their end.
+/// Finds a run by its name, else by its number in the list, from 1.
 ///
 /// # Errors
-/// [`Failure::Write`] where the folder of the study cannot be made.
-pub(crate) fn runs(study: &Study, settings: &Settings) -> Result<(Vec<Run>, Result<(), Failure>), Failure> {
-    atomic::create_folder(&settings.output)?;
-    let under_way = UnderWay::new();
-    let slots: Vec<Mutex<Option<Run>>> = study.runs.iter().map(|_| Mutex::new(None)).collect();
-    let next = AtomicUsize::new(0);
-    let wrong: Mutex<Option<Failure>> = Mutex::new(None);
-    let program = program()?;
-    // Two runs alike share a folder; the second one waits until the first has finished.
-    let busy = Mutex::new(BTreeSet::new());
+/// A run that the list does not have.
+pub fn find<'a>(runs: &'a [Planned], wanted: &str) -> Result<&'a Planned, Failure> {
+    let number = wanted.parse().ok().and_then(|number: usize| runs.get(number.checked_sub(1)?));
+    runs.iter().find(|run| run.name == wanted).or(number).ok_or_else(|| {
+        Failure::input(format!("no run \"{wanted}\"; the list has {} runs, by name or from 1", runs.len()))
+    })
+}
+
+/// Does one run, unless it has finished before; goes on from its last state. The status that it ends with.
+///
+/// # Errors
+/// As [`crate::run`].
+pub fn run_one(planned: &Planned, folders: &Folders, settings: &Settings) -> Result<Status, Failure> {
+    let results = folders.results();
+    let (status, kept) = one::run_one(planned, &results, &settings.options, settings.anew, program()?)?;
+    if kept {
+        tell!("run {} has finished before: {}", planned.name, results.join(&planned.name).display());
+    }
+    Ok(status)
+}
+
+/// Does all runs, some at the same time. A run that is refused or stops itself is left as such, and the others go on.
+///
+/// # Errors
+/// What the machine refuses; [`Failure::Interrupted`] after Ctrl-C.
+pub fn run_all(runs: &[Planned], folders: &Folders, settings: &Settings) -> Result<(), Failure> {
+    let results = folders.results();
+    atomic::create_folder(&results)?;
+    let (under_way, program) = (UnderWay::new(), program()?);
+    // Two runs alike are one.
+    let mut names = BTreeSet::new();
+    let unlike: Vec<&Planned> = runs.iter().filter(|run| names.insert(run.name.as_str())).collect();
+    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(None));
     let work = || {
-        loop {
+        while !is_interrupted() {
             let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(planned) = study.runs.get(index) else { return };
-            let single = Single { planned, settings, program, busy: &busy };
-            match single.run() {
-                Ok(run) => {
-                    show(&run, index, study.runs.len());
-                    put(&slots[index], Some(run));
-                }
-                Err(failure) => {
-                    put(&wrong, Some(failure));
+            let Some(planned) = unlike.get(index) else { return };
+            match one::run_one(planned, &results, &settings.options, settings.anew, program) {
+                Err(failure) if !one::is_of_case(&failure) => {
+                    // A worker that panicked has left its lock poisoned, and the value as it was.
+                    *wrong.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(failure);
                     return;
                 }
+                _ => show(&one::found(planned, &results, &folders.runs), index, unlike.len()),
             }
         }
     };
     std::thread::scope(|scope| {
-        for _ in 0..settings.jobs.clamp(1, study.runs.len().max(1)) {
+        for _ in 0..settings.jobs.clamp(1, unlike.len().max(1)) {
             scope.spawn(work);
         }
     });
-    let open = |planned: &fractum_output::study::run::Planned| Run { planned: planned.clone(), ..Run::default() };
-    let runs: Vec<Run> =
-        slots.into_iter().zip(&study.runs).map(|(slot, planned)| take(slot).unwrap_or_else(|| open(planned))).collect();
-    let ended = match take(wrong) {
+    drop(under_way);
+    match wrong.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner) {
         Some(failure) => Err(failure),
         None if is_interrupted() => Err(Failure::Interrupted),
         None => Ok(()),
-    };
-    drop(under_way);
-    Ok((runs, ended))
+    }
+}
+
+/// What came of all runs, from their folders.
+pub fn found(runs: &[Planned], folders: &Folders) -> Vec<Run> {
+    let results = folders.results();
+    runs.iter().map(|planned| one::found(planned, &results, &folders.runs)).collect()
+}
+
+/// Compares what came of all runs: writes the tables and the page, and tells them. The runs.
+///
+/// - `table`: where the line of each run with every number of its summary goes
+///
+/// # Errors
+/// [`Failure::Write`]; [`Failure::Input`] for a quantity that no run knows.
+pub fn collect(study: &Study, folders: &Folders, table: Option<&Path>) -> Result<(Vec<Run>, String), Failure> {
+    let mut runs = found(&study.runs, folders);
+    one::compare(&mut runs, &study.compare)?;
+    let families: Vec<Family<'_>> = families(&runs);
+    let within = study.within;
+    let file = |name: &str| folders.tables.join(name);
+    let mut text: Vec<String> = families.iter().map(|family| table::runs(family).to_markdown()).collect();
+    text.extend(table::settings(&families).iter().map(|settings| settings.to_markdown()));
+    text.push(lines(&table::findings(&families, within)));
+    text.push(lines(&table::failures(&families)));
+    text.retain(|part| !part.is_empty());
+    let mut text = text.join("\n");
+    atomic::create_folder(&folders.tables)?;
+    atomic::write(table.unwrap_or(&file("summary.csv")), list::results(&runs).as_bytes())?;
+    atomic::write(&file("study.md"), text.as_bytes())?;
+    atomic::write(&file("study.csv"), table::to_csv(&runs).as_bytes())?;
+    atomic::write(&file("study.json"), table::to_json(&study.title, &families, within).as_bytes())?;
+    report::write_study(&study.title, &families, within, &folders.tables)?;
+    let missed = "! means that a reference is missed; ";
+    let missed = if text.contains(" !") { missed } else { "" };
+    text += &format!("{missed}{} in {}", report::STUDY_FILES, folders.tables.display());
+    Ok((runs, text))
 }
 
 /// Hash of this program, by which what another build has found is told from its own results.
@@ -108,48 +180,18 @@ fn program() -> Result<u128, Failure> {
     Ok(xxhash_rust::xxh3::xxh3_128(&bytes))
 }
 
-/// A worker that panicked has left its lock poisoned, and its value as it was.
-fn put<T>(slot: &Mutex<T>, value: T) {
-    *slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = value;
-}
-
-fn take<T>(slot: Mutex<T>) -> T {
-    slot.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
-}
-
 /// A line of progress.
 fn show(run: &Run, index: usize, of: usize) {
-    let words: Vec<&str> = run.planned.coordinates.iter().map(|(_, value)| value.as_str()).collect();
+    let words: Vec<&str> = run.planned.coordinates().map(|(_, value)| value).collect();
     let name = format!("{}/{of} {}: {}", index + 1, run.planned.family, words.join(", "));
     match &run.end {
         End::Finished(measured) => {
-            let worst = measured.worst().map_or(String::new(), |worst| {
-                format!(", largest relative error {}", fractum_output::number::percent(worst))
-            });
-            tell!("{name}: {} s{worst}", significant(measured.seconds(), 3));
+            let error = measured.worst().map(|worst| format!(", largest relative error {}", percent(worst)));
+            tell!("{name}: {} s{}", significant(measured.seconds(), 3), error.unwrap_or_default());
         }
         End::Failed(why) => tell!("{name}: {why}"),
         End::Open => {}
     }
-}
-
-fn write(study: &Study, runs: &[Run], settings: &Settings) -> Result<(), Failure> {
-    let families: Vec<Family<'_>> = families(runs);
-    let within = study.within;
-    let file = |name: &str| settings.output.join(name);
-    let mut text: Vec<String> = families.iter().map(|family| table::runs(family).to_markdown()).collect();
-    text.extend(table::settings(&families).iter().map(|settings| settings.to_markdown()));
-    text.push(lines(&table::findings(&families, within)));
-    text.push(lines(&table::failures(&families)));
-    text.retain(|part| !part.is_empty());
-    let text = text.join("\n");
-    atomic::write(&file("study.md"), text.as_bytes())?;
-    atomic::write(&file("study.csv"), table::to_csv(runs).as_bytes())?;
-    atomic::write(&file("study.json"), table::to_json(&study.title, &families, within).as_bytes())?;
-    report::write_study(&study.title, &families, within, &settings.output)?;
-    say!("{text}");
-    say!("! means that a reference is missed; {} in {}", report::STUDY_FILES, settings.output.display());
-    Ok(())
 }
 
 fn lines(lines: &[String]) -> String {

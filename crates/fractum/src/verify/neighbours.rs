@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use fractum_case::model::{Case, Expect, Neighbour, Saying};
-use fractum_case::study::plan::Study;
+use fractum_case::study::plan::named;
 use fractum_output::atomic;
 use fractum_output::beside::{End, Row, page};
 use fractum_output::number::quantity;
@@ -13,7 +13,8 @@ use fractum_output::study::run::{self, Planned, Run};
 
 use crate::error::Failure;
 use crate::say;
-use crate::study::{Settings, runs};
+use crate::simulation::Options;
+use crate::study::{Folders, Settings, found, run_all};
 use crate::verify::{Selection, selected};
 
 /// Name of the run of the case as it is, among its neighbours.
@@ -31,30 +32,30 @@ pub fn neighbours(selection: &Selection, only_promised: bool) -> Result<Vec<Row>
     if cases.is_empty() {
         return Err(Failure::input(format!("{}: no case with [[expect]] matches", selection.cases.display())));
     }
-    let mut study = Study::default();
+    let mut planned = Vec::new();
     for (path, case) in &cases {
-        let name = selection.name_of(path);
-        let plan = |neighbour: &str, overrides: &[(String, String)]| Planned {
-            family: name.clone(),
-            coordinates: vec![("neighbour".to_owned(), neighbour.to_owned())],
+        let plan = |neighbour: String, overrides: &[(String, String)]| Planned {
+            family: selection.name_of(path),
+            setting: neighbour,
             case: path.clone(),
             overrides: overrides.to_vec(),
+            ..Planned::default()
         };
         let wanted = wanted(case, only_promised);
         if !wanted.is_empty() {
-            study.runs.push(plan(ITSELF, &[]));
-            study.runs.extend(wanted.iter().map(|neighbour| plan(&neighbour.name(), &neighbour.set)));
+            planned.push(plan(ITSELF.to_owned(), &[]));
+            planned.extend(wanted.iter().map(|neighbour| plan(neighbour.name(), &neighbour.set)));
         }
     }
-    let settings = Settings {
-        output: selection.output.clone(),
-        jobs: selection.jobs,
-        threads: selection.threads.unwrap_or(1),
-        anew: false,
-        only_tables: false,
+    let (planned, folders) = (named(planned), Folders::of_study(&selection.output));
+    let options = Options {
+        threads: selection.threads.or(Some(1)),
+        quiet: true,
         cache: selection.cache.clone(),
+        ..Options::default()
     };
-    let (done, ended) = runs(&study, &settings)?;
+    let ended = run_all(&planned, &folders, &Settings { jobs: selection.jobs, anew: false, options });
+    let done = found(&planned, &folders);
     let rows: Vec<Row> = cases.iter().flat_map(|(path, case)| rows(&selection.name_of(path), case, &done)).collect();
     write(&selection.output, &rows)?;
     ended.map(|()| rows)
@@ -75,7 +76,7 @@ fn wanted(case: &Case, only_promised: bool) -> Vec<&Neighbour> {
 /// A row for every reference and neighbour of a case.
 fn rows(name: &str, case: &Case, runs: &[Run]) -> Vec<Row> {
     let of = |neighbour: &str| {
-        runs.iter().find(|run| run.planned.family == name && run.on("neighbour") == neighbour).map(|run| &run.end)
+        runs.iter().find(|run| run.planned.family == name && run.planned.setting == neighbour).map(|run| &run.end)
     };
     let mut rows = Vec::new();
     for neighbour in &case.source.verify.neighbours {
