@@ -1,4 +1,11 @@
-//! Structured meshes for tests and benches: boxes of tetrahedra, rectangles of triangles.
+//! Meshes that the program makes itself: structured boxes and rectangles, and plane bodies within outlines.
+
+mod delaunay;
+mod outline;
+
+pub use outline::{Curve, Outline, Piece, fill};
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use fractum_math::Vec3;
 
@@ -24,39 +31,28 @@ pub struct Jitter {
 /// If a number of cells is 0, a size is not positive, the jitter is out of range, or the mesh exceeds 32 bit indices.
 pub fn structured_box(cells: [u32; 3], size: Vec3, jitter: Option<Jitter>) -> Mesh {
     let grid = Grid::new(cells, size);
-    let nodes = grid.nodes(jitter);
-    // the six ways from corner 000 to corner 111 along the axes; odd permutations change the sense
-    const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
-    let mut tetrahedra = Vec::with_capacity(6 * grid.cell_count());
-    for cell in grid.cells() {
-        for (number, path) in PATHS.iter().enumerate() {
-            let mut corner = cell;
-            let mut element = [grid.node(corner); 4];
-            for (step, &axis) in path.iter().enumerate() {
-                corner[axis] += 1;
-                element[step + 1] = grid.node(corner);
-            }
-            if number >= 3 {
-                element.swap(2, 3);
-            }
-            tetrahedra.push(element);
-        }
-    }
-    let triangles: Vec<[u32; 3]> = boundary_of_tetrahedra(&tetrahedra).into_iter().map(|facet| facet.nodes).collect();
-    let mut groups = grid.side_groups(2, 3, &triangles, |group| &mut group.triangles);
-    let all = (0..tetrahedra.len() as u32).collect();
-    groups.push(Group { name: "body".to_owned(), dimension: 3, tag: 1, tetrahedra: all, ..Group::default() });
-    let first_tag = triangles.len() as u64 + 1;
-    Mesh {
-        node_tags: (1..=nodes.len() as u64).collect(),
-        triangle_tags: (1..first_tag).collect(),
-        tetrahedron_tags: (first_tag..first_tag + tetrahedra.len() as u64).collect(),
-        nodes,
-        triangles,
-        tetrahedra,
-        groups,
-        ..Mesh::default()
-    }
+    let tetrahedra = grid.cells().flat_map(|cell| grid.tetrahedra(cell, [false; 3])).collect();
+    grid.solid(grid.nodes(jitter), tetrahedra)
+}
+
+/// As [`structured_box`] of some cells alone, each of which is the mirror of its neighbours, so that no diagonal is favoured.
+///
+/// - `keep`: whether a cell is there
+///
+/// # Panics
+/// As [`structured_box`].
+pub fn mirrored_cells(cells: [u32; 3], size: Vec3, keep: impl Fn([u32; 3]) -> bool) -> Mesh {
+    let grid = Grid::new(cells, size);
+    let kept = grid.cells().filter(|&cell| keep(cell));
+    let tetrahedra = kept.flat_map(|cell| grid.tetrahedra(cell, cell.map(|index| index % 2 == 1))).collect();
+    let mut mesh = grid.solid(grid.nodes(None), tetrahedra);
+    let used: BTreeSet<u32> = mesh.tetrahedra.iter().flatten().copied().collect();
+    let new: BTreeMap<u32, u32> = used.iter().copied().zip(0..).collect();
+    mesh.nodes = used.iter().map(|&node| mesh.nodes[node as usize]).collect();
+    mesh.tetrahedra.iter_mut().flatten().for_each(|node| *node = new[node]);
+    mesh.triangles.iter_mut().flatten().for_each(|node| *node = new[node]);
+    mesh.number();
+    mesh
 }
 
 /// A rectangle from the origin to `size` in the xy-plane, of `cells[0]`·`cells[1]` cells with two counter-clockwise
@@ -85,17 +81,9 @@ pub fn plane_mesh(nodes: Vec<Vec3>, lines: Vec<[u32; 2]>, triangles: Vec<[u32; 3
     let all = (0..triangles.len() as u32).collect();
     let mut groups = sides;
     groups.push(Group { name: "body".to_owned(), dimension: 2, tag: 1, triangles: all, ..Group::default() });
-    let first_tag = lines.len() as u64 + 1;
-    Mesh {
-        node_tags: (1..=nodes.len() as u64).collect(),
-        line_tags: (1..first_tag).collect(),
-        triangle_tags: (first_tag..first_tag + triangles.len() as u64).collect(),
-        nodes,
-        lines,
-        triangles,
-        groups,
-        ..Mesh::default()
-    }
+    let mut mesh = Mesh { nodes, lines, triangles, groups, ..Mesh::default() };
+    mesh.number();
+    mesh
 }
 
 /// A grid of cells; an axis with 0 cells is absent.
@@ -132,6 +120,38 @@ impl Grid {
 
     fn node(&self, [i, j, k]: [u32; 3]) -> u32 {
         i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
+    }
+
+    /// The six tetrahedra of a cell, which may be mirrored along each axis.
+    fn tetrahedra(&self, cell: [u32; 3], mirrored: [bool; 3]) -> [[u32; 4]; 6] {
+        // The six ways from corner 000 to corner 111 along the axes; odd permutations change the sense, and so does a mirror.
+        const PATHS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2], [2, 1, 0]];
+        let turned = mirrored.iter().filter(|&&mirrored| mirrored).count() % 2 == 1;
+        let mut tetrahedra = [[0; 4]; 6];
+        for (number, (path, element)) in PATHS.iter().zip(&mut tetrahedra).enumerate() {
+            let mut corner: [u32; 3] = std::array::from_fn(|axis| cell[axis] + u32::from(mirrored[axis]));
+            element[0] = self.node(corner);
+            for (step, &axis) in path.iter().enumerate() {
+                corner[axis] = 2 * cell[axis] + 1 - corner[axis];
+                element[step + 1] = self.node(corner);
+            }
+            if (number >= 3) != turned {
+                element.swap(2, 3);
+            }
+        }
+        tetrahedra
+    }
+
+    /// A mesh of tetrahedra with its sides.
+    fn solid(&self, nodes: Vec<Vec3>, tetrahedra: Vec<[u32; 4]>) -> Mesh {
+        let facets = boundary_of_tetrahedra(&tetrahedra);
+        let triangles: Vec<[u32; 3]> = facets.into_iter().map(|facet| facet.nodes).collect();
+        let mut groups = self.side_groups(2, 3, &triangles, |group| &mut group.triangles);
+        let all = (0..tetrahedra.len() as u32).collect();
+        groups.push(Group { name: "body".to_owned(), dimension: 3, tag: 1, tetrahedra: all, ..Group::default() });
+        let mut mesh = Mesh { nodes, triangles, tetrahedra, groups, ..Mesh::default() };
+        mesh.number();
+        mesh
     }
 
     /// Grid coordinates of a node.
@@ -194,4 +214,21 @@ pub(crate) fn unit_interval(seed: u64, counter: u64) -> f64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quality::signed_volume;
+
+    #[test]
+    fn mirrored_cells_fill_an_angle_with_the_sides_of_its_box() {
+        let mesh = mirrored_cells([4, 3, 2], Vec3::new(4.0, 3.0, 2.0), |[i, j, _]| i == 0 || j == 0);
+        let volumes: Vec<f64> =
+            mesh.tetrahedra.iter().map(|t| signed_volume(t.map(|node| mesh.nodes[node as usize]))).collect();
+        assert!(volumes.iter().all(|volume| (volume - 1.0 / 6.0).abs() < 1e-12) && volumes.len() == 6 * 6 * 2);
+        // Sides of an angle: two of 6 squares, a rim of 14 by 2; were a diagonal not shared, inner sides would be among them.
+        assert_eq!(boundary_of_tetrahedra(&mesh.tetrahedra).len(), 2 * (2 * 6 + 14 * 2));
+        assert_eq!((mesh.group_nodes("x+").len(), mesh.group_nodes("y+").len()), (6, 6));
+    }
 }

@@ -188,24 +188,6 @@ fn elements_of_nodes(mesh: &Mesh) -> Vec<Vec<u32>> {
     found
 }
 
-impl Mesh {
-    /// Tags in the order of nodes and elements, from 1.
-    fn number(&mut self) {
-        self.node_tags = (1..=self.nodes.len() as u64).collect();
-        let mut next = 1;
-        let mut tags = |count: usize| {
-            let first = next;
-            next += count as u64;
-            (first..next).collect()
-        };
-        self.point_tags = tags(self.points.len());
-        self.line_tags = tags(self.lines.len());
-        self.triangle_tags = tags(self.triangles.len());
-        self.quad_tags = tags(self.quads.len());
-        self.tetrahedron_tags = tags(self.tetrahedra.len());
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

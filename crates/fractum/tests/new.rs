@@ -14,7 +14,7 @@ fn every_template_is_listed_and_passes_check_without_a_doubt() {
         assert_eq!(made.code, Some(0), "{name}: {}", made.stderr);
         if name != "bonded-ucs" {
             assert!(place.path(&format!("{name}/part.geo")).is_file());
-            let checked = place.fractum(&["check", &format!("{name}/case.toml")]);
+            let checked = place.fractum(&["check", "--strict", &format!("{name}/case.toml")]);
             assert_eq!((checked.code, checked.stderr.as_str()), (Some(0), ""), "{name}");
         }
     }

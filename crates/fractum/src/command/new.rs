@@ -1,8 +1,11 @@
-//! `fractum new`: a folder with a case that runs as it stands, its mesh, and the geometry that made the mesh.
+//! `fractum new`: a folder with a case that runs as it stands, its mesh, and a geometry from which Gmsh makes meshes of other sizes.
+
+mod meshes;
 
 use std::path::PathBuf;
 
 use fractum::{ExitCode, Failure, say};
+use fractum_mesh::{Mesh, MshFormat, write_msh};
 use fractum_output::atomic;
 
 /// A case to start from.
@@ -10,8 +13,10 @@ struct Template {
     name: &'static str,
     what: &'static str,
     case: &'static str,
-    /// Mesh and geometry; none of bodies that fractum packs.
-    mesh: Option<(&'static [u8], &'static str)>,
+    /// What makes the mesh; none of bodies that fractum packs.
+    mesh: Option<fn() -> Mesh>,
+    /// The geometry by which Gmsh makes such a mesh.
+    geometry: &'static str,
 }
 
 /// A template from its folder below `templates`.
@@ -22,29 +27,28 @@ macro_rules! template {
             what: $what,
             case: include_str!(concat!("../../templates/", $name, "/case.toml")),
             mesh: None,
+            geometry: "",
         }
     };
-    ($name:literal, $what:literal) => {
+    ($name:literal, $what:literal, $mesh:path) => {
         Template {
             name: $name,
             what: $what,
             case: include_str!(concat!("../../templates/", $name, "/case.toml")),
-            mesh: Some((
-                include_bytes!(concat!("../../templates/", $name, "/part.msh")),
-                include_str!(concat!("../../templates/", $name, "/part.geo")),
-            )),
+            mesh: Some($mesh),
+            geometry: include_str!(concat!("../../templates/", $name, "/part.geo")),
         }
     };
 }
 
 const TEMPLATES: [Template; 7] = [
-    template!("plate", "plate with two holes pulled apart at rest; triangles"),
-    template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra"),
-    template!("brazilian", "disc of rock split between platens at rest; triangles"),
-    template!("beam", "notched beam in three-point bending at rest; triangles"),
+    template!("plate", "plate with two holes pulled apart at rest; triangles", meshes::plate),
+    template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra", meshes::bracket),
+    template!("brazilian", "disc of rock split between platens at rest; triangles", meshes::brazilian),
+    template!("beam", "notched beam in three-point bending at rest; triangles", meshes::beam),
     template!("bonded-ucs", "cylinder of bonded particles crushed at rest; no mesh", case alone),
-    template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments"),
-    template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion"),
+    template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments", meshes::impact),
+    template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion", meshes::blast),
 ];
 
 /// Lists the templates, or writes one into a folder.
@@ -57,7 +61,7 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
             say!("{name:<12} {what}");
         }
         say!(
-            "\nfractum new NAME [FOLDER] writes case.toml with its mesh, part.msh, and the Gmsh geometry of that, part.geo"
+            "\nfractum new NAME [FOLDER] writes case.toml with its mesh, part.msh, and the Gmsh geometry of another one, part.geo"
         );
         return Ok(ExitCode::Done);
     };
@@ -66,9 +70,11 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
         return Err(Failure::input(format!("no template \"{name}\"; templates: {}", names.join(", "))));
     };
     let folder = folder.unwrap_or_else(|| PathBuf::from(name));
-    let mut files: Vec<(&str, &[u8])> = vec![("case.toml", template.case.as_bytes())];
-    if let Some((mesh, geometry)) = template.mesh {
-        files.extend([("part.msh", mesh), ("part.geo", geometry.as_bytes())]);
+    let mut files: Vec<(&str, Vec<u8>)> = vec![("case.toml", template.case.into())];
+    if let Some(make) = template.mesh {
+        let mut mesh = Vec::new();
+        write_msh(&make(), MshFormat::V4_1Ascii, &mut mesh).map_err(|error| Failure::input(error.to_string()))?;
+        files.extend([("part.msh", mesh), ("part.geo", template.geometry.into())]);
     }
     if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
         let path = folder.join(file);
@@ -76,7 +82,7 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
     }
     atomic::create_folder(&folder)?;
     for (file, bytes) in files {
-        atomic::write(&folder.join(file), bytes)?;
+        atomic::write(&folder.join(file), &bytes)?;
     }
     say!("{}: {}", folder.display(), template.what);
     say!("next: fractum run {}", fractum::for_shell(&folder.join("case.toml").display().to_string()));

@@ -1,0 +1,105 @@
+//! The meshes of the templates, as `part.geo` describes them for Gmsh.
+
+use std::f64::consts::PI;
+
+use fractum_math::Vec3;
+use fractum_math::elementary::{asin, sin_cos};
+use fractum_mesh::generate::{Outline, Piece, fill, mirrored_cells};
+use fractum_mesh::{Group, Mesh, scrambled};
+
+/// The outline of a rectangle, counter-clockwise from its lowest corner, with the groups of its sides.
+fn rectangle([left, low]: [f64; 2], [right, high]: [f64; 2], [bottom, east, top, west]: [&'static str; 4]) -> Outline {
+    let corners = [[right, low], [right, high], [left, high], [left, low]];
+    let pieces = corners.into_iter().zip([bottom, east, top, west]).map(|(to, lines)| Piece::line(to, lines)).collect();
+    Outline { start: [left, low], pieces }
+}
+
+fn hole(centre: [f64; 2], radius: f64, lines: &'static str) -> Outline {
+    Outline { start: [centre[0] + radius, centre[1]], pieces: vec![Piece::arc(centre, -2.0 * PI, lines)] }
+}
+
+/// A size that goes from one value to another between two distances.
+fn graded(distance: f64, [near, far]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
+    near + (far - near) * ((distance - from) / (to - from)).clamp(0.0, 1.0)
+}
+
+pub(super) fn plate() -> Mesh {
+    let plate = rectangle([0.0, 0.0], [200.0, 100.0], ["", "right", "", "left"]);
+    let holes = [hole([70.0, 40.0], 12.0, ""), hole([130.0, 60.0], 12.0, "")];
+    let [first, second] = holes;
+    fill(&[plate, first, second], "plate", &|[x, _]| graded((x - 100.0).abs(), [3.5, 8.0], [50.0, 70.0]), 1)
+}
+
+pub(super) fn brazilian() -> Mesh {
+    let strip = asin(0.08);
+    let (sin, cos) = sin_cos(strip);
+    let arc = |angle, lines| Piece::arc([0.0, 0.0], angle, lines);
+    let [strip, side] = [2.0 * strip, PI - 2.0 * strip];
+    let pieces = vec![arc(strip, "top"), arc(side, ""), arc(strip, "bottom"), arc(side, "")];
+    let disc = Outline { start: [50.0 * sin, 50.0 * cos], pieces };
+    fill(&[disc], "disc", &|[x, _]| graded(x.abs(), [1.5, 3.0], [0.0, 50.0]), 1)
+}
+
+pub(super) fn beam() -> Mesh {
+    let point = |to, end| Piece { end, ..Piece::line(to, "") };
+    let pieces = vec![
+        point([-150.0, 0.0], "left"),
+        point([-2.0, 0.0], ""),
+        point([-2.0, 30.0], ""),
+        point([2.0, 30.0], ""),
+        point([2.0, 0.0], ""),
+        point([150.0, 0.0], "right"),
+        point([200.0, 0.0], ""),
+        point([200.0, 100.0], ""),
+        point([4.0, 100.0], ""),
+        Piece::line([-4.0, 100.0], "nose"),
+        point([-200.0, 100.0], ""),
+        point([-200.0, 0.0], ""),
+    ];
+    let beam = Outline { start: [-200.0, 0.0], pieces };
+    fill(&[beam], "beam", &|[x, _]| graded(x.abs(), [3.0, 12.0], [4.0, 150.0]), 1)
+}
+
+pub(super) fn blast() -> Mesh {
+    let rock = rectangle([-2.0, -2.0], [2.0, 1.0], ["far", "far", "", "far"]);
+    let size = |[x, y]: [f64; 2]| 0.012 + 0.025 * (x * x + y * y).sqrt();
+    fill(&[rock, hole([0.0, 0.0], 0.05, "hole")], "rock", &size, 1)
+}
+
+pub(super) fn bracket() -> Mesh {
+    let cells = mirrored_cells([20, 20, 7], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
+    with_groups(&scrambled(&cells, 0.4, 1), "bracket", &[("y+", "top"), ("x+", "end")])
+}
+
+pub(super) fn impact() -> Mesh {
+    let mut cells = mirrored_cells([22, 22, 4], Vec3::new(200.0, 200.0, 30.0), |_| true);
+    cells.nodes.iter_mut().for_each(|node| *node -= Vec3::new(100.0, 100.0, 0.0));
+    let rim = ["x-", "x+", "y-", "y+"].map(|side| (side, "rim"));
+    with_groups(&scrambled(&cells, 0.4, 1), "slab", &rim)
+}
+
+/// The mesh with other names: of all tetrahedra, and of some sides; the others have no triangles.
+fn with_groups(mesh: &Mesh, body: &str, sides: &[(&str, &str)]) -> Mesh {
+    let mut groups: Vec<Group> = Vec::new();
+    let mut triangles = Vec::new();
+    for (side, name) in sides {
+        let group = match groups.iter_mut().find(|group| group.name == *name) {
+            Some(group) => group,
+            None => {
+                let tag = groups.len() as i32 + 1;
+                groups.push(Group { name: (*name).to_owned(), dimension: 2, tag, ..Group::default() });
+                &mut groups[tag as usize - 1]
+            }
+        };
+        for of_side in mesh.group(side) {
+            group.triangles.extend((triangles.len() as u32..).take(of_side.triangles.len()));
+            triangles.extend(of_side.triangles.iter().map(|&triangle| mesh.triangles[triangle as usize]));
+        }
+    }
+    let all = (0..mesh.tetrahedra.len() as u32).collect();
+    groups.push(Group { name: body.to_owned(), dimension: 3, tag: 1, tetrahedra: all, ..Group::default() });
+    let (nodes, tetrahedra) = (mesh.nodes.clone(), mesh.tetrahedra.clone());
+    let mut named = Mesh { nodes, triangles, tetrahedra, groups, ..Mesh::default() };
+    named.number();
+    named
+}
