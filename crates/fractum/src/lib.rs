@@ -5,7 +5,6 @@
 //! - [`output`]: what a run leaves behind
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
-//! - [`stress`]: random scenes of every kind of body
 //! - [`study`]: many runs of a list, done here or one by one, and what they came to side by side
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
@@ -58,7 +57,6 @@ pub mod report;
 mod run;
 mod simulation;
 mod solver;
-pub mod stress;
 pub mod study;
 pub mod terminal;
 pub mod verify;

@@ -28,7 +28,6 @@ mod results_folder;
 mod resume;
 mod stages;
 mod static_frames;
-mod stress;
 mod study;
 mod terminal;
 mod tied;

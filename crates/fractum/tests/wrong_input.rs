@@ -444,13 +444,13 @@ fn an_interval_beyond_all_time_is_never_over() {
 #[test]
 fn a_wrong_option_is_wrong_input() {
     let workplace = Workplace::new(SMALL);
-    let steps = ["verify", "--stress", "--steps"];
     for arguments in [
         &["run", "case.toml", "--thread", "2"][..],
         &["run"],
         &["walk"],
         &[],
-        &[&steps[..], &["--scenes", "2"]].concat(),
+        &["verify", "--stress"],
+        &["lab", "strength", "tension"],
     ] {
         let ended = workplace.fractum(arguments);
         assert_eq!(ended.code, Some(1), "{arguments:?}: {ended:?}");

@@ -1,13 +1,11 @@
 //! The commands: arguments in, exit code out.
 
 mod calibrate;
-mod convergence;
 mod help;
 mod lab;
 mod lab_break;
 #[cfg(feature = "report")]
 mod lab_pictures;
-mod lab_strength;
 mod manual;
 mod mesh;
 mod mesh_info;
@@ -87,38 +85,20 @@ enum Command {
         #[arg(short, long, default_value = "results/verify")]
         output: PathBuf,
         /// Cases of the gallery at the same time; with --threads 1 one per core is fastest.
-        #[arg(long, default_value_t = 1, value_parser = thread_count, conflicts_with = "stress")]
+        #[arg(long, default_value_t = 1, value_parser = thread_count)]
         jobs: usize,
         /// Threads per case; all cores by default.
         #[arg(long, value_parser = thread_count)]
         threads: Option<usize>,
         /// The neighbours of every case, such as another seed or Poisson's ratio, instead of the cases themselves.
-        #[arg(long, conflicts_with = "stress")]
+        #[arg(long)]
         neighbours: bool,
         /// Only the neighbours for which a reference is promised to hold.
         #[arg(long, requires = "neighbours")]
         promised: bool,
-        /// Random scenes of every kind of body instead of the gallery.
-        #[arg(long, conflicts_with_all = ["names", "quick"])]
+        /// A command of `record`, the program of the tests.
+        #[arg(long, hide = true)]
         stress: bool,
-        /// Random blasts only.
-        #[arg(long, requires = "stress")]
-        blasts: bool,
-        /// The largest stable step of every kind of scene instead of random ones.
-        #[arg(long, requires = "stress", conflicts_with_all = ["blasts", "scenes", "first"])]
-        steps: bool,
-        /// With --steps: a steps.json of before, to tell what has changed.
-        #[arg(long, requires = "steps")]
-        baseline: Option<PathBuf>,
-        /// Number of random scenes.
-        #[arg(long, default_value_t = 300, requires = "stress")]
-        scenes: usize,
-        /// Number of the first scene: --first 785 --scenes 1 runs one scene again.
-        #[arg(long, default_value_t = 0, requires = "stress")]
-        first: usize,
-        /// Seed of the random scenes.
-        #[arg(long, default_value_t = 1, requires = "stress")]
-        seed: u64,
     },
     /// Run a case with varied values, here or one by one on a cluster, and compare the results.
     #[command(visible_alias = "sweep")]
@@ -218,10 +198,9 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Run(run) => ranks::run_case(run, json),
         Command::Check { case, set, strict } => check(&case, &set, strict),
         Command::New { template, folder } => new::new(template.as_deref(), folder),
-        Command::Verify { stress: true, blasts, steps, baseline, scenes, first, seed, output, threads, .. } => {
-            let settings = fractum::stress::Settings { scenes, first, blasts, seed, output, threads, cache: cache() };
-            if steps { measure_steps(&settings, baseline.as_deref()) } else { run_random_scenes(&settings) }
-        }
+        Command::Verify { stress: true, .. } => Err(Failure::input(
+            "random scenes are a matter of the tests: cargo run --release -p fractum-record -- stress",
+        )),
         Command::Verify { names, quick, cases, output, jobs, threads, neighbours, promised, .. } => {
             let selection = fractum::verify::Selection { cases, names, quick, output, jobs, threads, cache: cache() };
             if neighbours { run_neighbours(&selection, promised) } else { run_gallery(&selection) }
@@ -261,27 +240,6 @@ fn run_neighbours(selection: &fractum::verify::Selection, only_promised: bool) -
     match rows.iter().filter(|row| row.end == fractum_output::beside::End::Fails).count() {
         0 => Ok(ExitCode::Done),
         failed => Err(Failure::Unmet(format!("{failed} references do not hold beside their case"))),
-    }
-}
-
-fn run_random_scenes(settings: &fractum::stress::Settings) -> Result<ExitCode, Failure> {
-    let lines = fractum::stress::stress(settings)?;
-    match lines.iter().filter(|line| line.end == fractum::stress::End::Silent).count() {
-        0 => Ok(ExitCode::Done),
-        silent => Err(Failure::Unmet(format!("{silent} of {} scenes went wrong without a word", lines.len()))),
-    }
-}
-
-fn measure_steps(
-    settings: &fractum::stress::Settings,
-    baseline: Option<&std::path::Path>,
-) -> Result<ExitCode, Failure> {
-    let limits = fractum::stress::steps(settings, baseline)?;
-    match limits.iter().filter(|limit| !limit.holds()).count() {
-        0 => Ok(ExitCode::Done),
-        unstable => {
-            Err(Failure::Unmet(format!("{unstable} of {} scenes are unstable at the default step", limits.len())))
-        }
     }
 }
 

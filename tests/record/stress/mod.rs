@@ -1,12 +1,12 @@
-//! `fractum verify --stress`: random scenes of every kind of body, run briefly, and what became of them.
+//! `record stress`: random scenes of every kind of body, run briefly, and what became of them.
 //!
 //! A scene may end in three honest ways: with a balance of energy within 1e-3, with a warning of the balance, or stopped with
 //! a reason. Everything else is a silent failure: a balance that is off without a warning, a number that is none, energy that
 //! dissipation gave back.
 
-pub mod blast;
-pub mod draw;
-pub mod scenes;
+pub(crate) mod blast;
+pub(crate) mod draw;
+pub(crate) mod scenes;
 mod situations;
 mod steps;
 
@@ -21,40 +21,40 @@ use fractum_prepare::Cache;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::error::Failure;
-use crate::say;
-use crate::{Options, Outcome, run};
 use blast::{BLAST, blast};
 use draw::Draw;
+use fractum::Failure;
+use fractum::say;
+use fractum::{Options, Outcome, run};
 use scenes::{KINDS, RandomScene, scene};
-pub use steps::{Limit, steps};
+pub(crate) use steps::steps;
 
 /// Relative residual of the energy balance below which a run is good.
 const GOOD_RESIDUAL: f64 = 1e-3;
 
 /// What is drawn, and where results go.
 #[derive(Clone, Debug)]
-pub struct Settings {
+pub(crate) struct Settings {
     /// Number of scenes.
-    pub scenes: usize,
+    pub(crate) scenes: usize,
     /// Number of the first of them.
-    pub first: usize,
+    pub(crate) first: usize,
     /// Blasts only, instead of scenes of every kind.
-    pub blasts: bool,
+    pub(crate) blasts: bool,
     /// Seed of all of them.
-    pub seed: u64,
+    pub(crate) seed: u64,
     /// Folder for `stress.json` and the cases that did not end well.
-    pub output: PathBuf,
+    pub(crate) output: PathBuf,
     /// Threads per case; all cores if none is given.
-    pub threads: Option<usize>,
+    pub(crate) threads: Option<usize>,
     /// Where packings and beams of bonded bodies are kept.
-    pub cache: Cache,
+    pub(crate) cache: Cache,
 }
 
 /// How a scene ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum End {
+pub(crate) enum End {
     /// Completed, balance within 1e-3.
     Good,
     /// Completed with a warning.
@@ -69,19 +69,19 @@ pub enum End {
 
 /// One scene of `stress.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Line {
+pub(crate) struct Line {
     /// Number; with the seed it gives the scene again.
-    pub scene: usize,
+    pub(crate) scene: usize,
     /// Kind of scene.
-    pub kind: &'static str,
+    pub(crate) kind: &'static str,
     /// How it ended.
-    pub end: End,
+    pub(crate) end: End,
     /// Largest relative residual; null where it did not complete.
-    pub residual: Option<f64>,
+    pub(crate) residual: Option<f64>,
     /// What was said, or what is wrong.
-    pub words: String,
+    pub(crate) words: String,
     /// Wall time [s].
-    pub seconds: f64,
+    pub(crate) seconds: f64,
 }
 
 /// Runs the scenes and prints the table by kind; `stress.json` is written anew after each scene, so that a run that is ended
@@ -89,7 +89,7 @@ pub struct Line {
 ///
 /// # Errors
 /// [`Failure::Write`] if a file cannot be written.
-pub fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
+pub(crate) fn stress(settings: &Settings) -> Result<Vec<Line>, Failure> {
     atomic::create_folder(&settings.output)?;
     let file = settings.output.join("stress.json");
     let mut lines = Vec::new();
@@ -200,3 +200,6 @@ fn print_table(lines: &[Line]) {
         print([kind.into(), of.len().to_string(), good, warned, stopped, refused, silent, largest, seconds]);
     }
 }
+
+#[cfg(test)]
+mod tests;

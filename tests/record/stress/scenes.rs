@@ -7,7 +7,7 @@ use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use super::draw::Draw;
 
 /// What the table of results has a line for.
-pub const KINDS: [&str; 14] = [
+pub(crate) const KINDS: [&str; 14] = [
     "elastic solid",
     "damaged solid",
     "phase field",
@@ -28,17 +28,17 @@ pub const KINDS: [&str; 14] = [
 const CYCLE: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 1, 5, 10, 11, 12, 13];
 
 /// A case file and its mesh.
-pub struct RandomScene {
+pub(crate) struct RandomScene {
     /// One of [`KINDS`].
-    pub kind: &'static str,
+    pub(crate) kind: &'static str,
     /// Text of the case; it names its mesh `mesh.msh`.
-    pub case: String,
+    pub(crate) case: String,
     /// Its mesh, where it has one.
-    pub mesh: Option<Mesh>,
+    pub(crate) mesh: Option<Mesh>,
 }
 
 /// The scene of a seed and a number.
-pub fn scene(seed: u64, number: usize) -> RandomScene {
+pub(crate) fn scene(seed: u64, number: usize) -> RandomScene {
     let mut draw = Draw::new(seed, number as u64);
     let kind = KINDS[CYCLE[number % CYCLE.len()]];
     match kind {

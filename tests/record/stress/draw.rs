@@ -3,11 +3,11 @@
 use fractum_math::elementary::{exp, ln};
 
 /// Draws of one scene.
-pub struct Draw(u64);
+pub(crate) struct Draw(u64);
 
 impl Draw {
     /// The draws of a seed and a number.
-    pub fn new(seed: u64, number: u64) -> Self {
+    pub(crate) fn new(seed: u64, number: u64) -> Self {
         let mut draw = Draw(seed ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         draw.next();
         Draw(draw.next())
@@ -22,27 +22,27 @@ impl Draw {
     }
 
     /// Between two numbers, each alike.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Between two positive numbers, each decade alike.
-    pub fn decades(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn decades(&mut self, low: f64, high: f64) -> f64 {
         exp(self.between(ln(low), ln(high)))
     }
 
     /// Below a number.
-    pub fn whole(&mut self, below: u64) -> u64 {
+    pub(crate) fn whole(&mut self, below: u64) -> u64 {
         self.next() % below
     }
 
     /// True with this probability.
-    pub fn chance(&mut self, probability: f64) -> bool {
+    pub(crate) fn chance(&mut self, probability: f64) -> bool {
         self.between(0.0, 1.0) < probability
     }
 
     /// One of some texts.
-    pub fn one_of<'a>(&mut self, texts: &[&'a str]) -> &'a str {
+    pub(crate) fn one_of<'a>(&mut self, texts: &[&'a str]) -> &'a str {
         texts[self.whole(texts.len() as u64) as usize]
     }
 }

@@ -11,7 +11,7 @@ use super::draw::Draw;
 use super::scenes::{Elastic, RandomScene, footer, number, random_header};
 
 /// Name of such scenes in the table.
-pub const BLAST: &str = "blast";
+pub(crate) const BLAST: &str = "blast";
 
 /// Largest pulse [Pa].
 const PULSES: [f64; 2] = [1e6, 1e10];

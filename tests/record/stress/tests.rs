@@ -1,8 +1,8 @@
-//! A share of `fractum verify --stress` that takes a few seconds: one scene of every kind that needs no packing.
+//! A share of `record stress` that takes a few seconds: one scene of every kind that needs no packing.
 
 use std::fs;
 
-use fractum::stress::{End, Line, Settings, stress};
+use super::{End, Line, Settings, stress};
 
 /// Runs a few scenes: those that ended without a word or were refused, how many were good, and how many there were.
 fn run(blasts: bool, first: usize, scenes: usize) -> (Vec<Line>, usize, usize) {

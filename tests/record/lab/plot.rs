@@ -1,4 +1,4 @@
-//! The plot of `fractum lab convergence`: E and ν against the number of particles.
+//! The plot of `record convergence`: E and ν against the number of particles.
 
 use fractum_math::elementary::ln;
 use std::fmt::Write;

@@ -1,4 +1,4 @@
-//! `fractum lab strength`: the published strengths on our own packings.
+//! `record strength`: the published strengths on our own packings.
 
 use clap::{Args, ValueEnum};
 use fractum::{Failure, say};
@@ -7,7 +7,7 @@ use fractum_dem::FractureCriterion;
 use fractum_dem::criterion::{BeamRankine, EndMoments, Hydrostatic, Level, Principal};
 use fractum_pack::{Convention, Domain, PackSpec, Packing, pack};
 
-/// Arguments of `fractum lab strength`.
+/// Arguments of `record strength`.
 #[derive(Args)]
 pub(crate) struct StrengthArguments {
     /// Which table.

@@ -1,4 +1,4 @@
-//! `fractum verify --stress --steps`: the largest stable step of every kind of scene, over the step that the program finds.
+//! `record steps`: the largest stable step of every kind of scene, over the step that the program finds.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 
 use super::situations::{Situation, situations};
 use super::{Settings, write_mesh};
-use crate::error::Failure;
-use crate::say;
+use fractum::Failure;
+use fractum::say;
 
 /// Factors on the step that the program finds between which the limit is looked for.
 const FACTORS: [f64; 2] = [0.5, 1.2];
@@ -30,18 +30,18 @@ const CHANGE: f64 = 0.02;
 
 /// One line of `steps.json`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
+pub(crate) struct Limit {
     /// What is special about the scene.
-    pub scene: String,
+    pub(crate) scene: String,
     /// Largest factor on the step found by the program at which the scene was stable; 1.2 where it was stable throughout.
-    pub stable_to: f64,
+    pub(crate) stable_to: f64,
     /// What happened beyond it.
-    pub beyond: String,
+    pub(crate) beyond: String,
 }
 
 impl Limit {
     /// Whether the step that runs take by default is stable.
-    pub fn holds(&self) -> bool {
+    pub(crate) fn holds(&self) -> bool {
         self.stable_to >= PICKED
     }
 }
@@ -50,7 +50,7 @@ impl Limit {
 ///
 /// # Errors
 /// [`Failure::Write`] if a file cannot be written; [`Failure::Input`] where a scene or the baseline cannot be read.
-pub fn steps(settings: &Settings, baseline: Option<&Path>) -> Result<Vec<Limit>, Failure> {
+pub(crate) fn steps(settings: &Settings, baseline: Option<&Path>) -> Result<Vec<Limit>, Failure> {
     let before = baseline.map(read_baseline).transpose()?;
     let mut pool = rayon::ThreadPoolBuilder::new();
     if let Some(threads) = settings.threads {
@@ -79,7 +79,7 @@ pub fn steps(settings: &Settings, baseline: Option<&Path>) -> Result<Vec<Limit>,
 
 fn read_baseline(path: &Path) -> Result<Vec<Limit>, Failure> {
     let text = fs::read_to_string(path).map_err(|error| Failure::input(format!("{}: {error}", path.display())))?;
-    let remedy = "give a steps.json that fractum verify --stress --steps has written";
+    let remedy = "give a steps.json that record steps has written";
     serde_json::from_str(&text).map_err(|error| Failure::input(format!("{}: {error}; {remedy}", path.display())))
 }
 
@@ -136,7 +136,7 @@ fn limit(situation: &Situation, settings: &Settings) -> Result<Limit, Failure> {
     }
     let at = |factor: f64| -> Result<Option<String>, Failure> {
         let overrides = [("solver.safety".to_owned(), factor.to_string())];
-        let mut scene = crate::load(&case, &overrides, &settings.cache)?.built.scene;
+        let mut scene = fractum::load(&case, &overrides, &settings.cache)?.built.scene;
         Ok(fails(&mut scene, situation))
     };
     let [mut stable, mut unstable] = FACTORS;
