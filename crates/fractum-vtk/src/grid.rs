@@ -126,7 +126,7 @@ impl UnstructuredGrid<'_> {
 #[cfg(test)]
 mod tests {
     use super::super::Values;
-    use super::super::decode::{Decoded, decode};
+    use super::super::decode::decode;
     use super::*;
     use proptest::prelude::*;
 
@@ -155,9 +155,9 @@ mod tests {
                 ],
                 time: Some(0.125),
             };
-            let file = decode(&grid.to_bytes(compression).unwrap());
-            assert_eq!(file.attribute("NumberOfPoints"), "5");
-            assert_eq!(file.attribute("NumberOfCells"), "4");
+            let bytes = grid.to_bytes(compression).unwrap();
+            let file = decode(&bytes);
+            assert_eq!(file.sizes(), [5, 4]);
             assert_eq!(file.f64("TimeValue"), [0.125]);
             assert_eq!(file.f64("Points"), POINTS.as_flattened());
             assert_eq!(file.i32("connectivity"), [0, 1, 2, 3, 1, 2, 3, 4, 0, 1, 2, 3, 4]);
@@ -165,7 +165,7 @@ mod tests {
             assert_eq!(file.bytes("types"), [10, 10, 5, 3]);
             assert_eq!(file.f64("velocity"), velocity.as_flattened());
             assert_eq!(file.i32("group"), [1, 1, 2, -3]);
-            assert_eq!(file.bytes("broken &lt;&amp;&quot;edge&quot;&gt;"), [0, 1, 0, 1]);
+            assert_eq!(file.bytes("broken <&\"edge\">"), [0, 1, 0, 1]);
             assert_eq!(file.components("velocity"), 3);
             assert_eq!(file.bytes("damage")[4..8], 0.25f32.to_ne_bytes());
         }
@@ -187,7 +187,12 @@ mod tests {
                     cell_data: &[],
                     time: None,
                 };
-                let file: Decoded = decode(&grid.to_bytes(compression).unwrap());
+                let bytes = grid.to_bytes(compression).unwrap();
+                let file = decode(&bytes);
+                if count == 0 {
+                    assert!(!file.has("value"), "an empty piece has no arrays to read");
+                    continue;
+                }
                 assert_eq!(file.bytes("value"), values);
                 assert_eq!(file.f64("Points").len(), 3 * count);
                 assert_eq!(file.bytes("connectivity").len(), 0);
@@ -197,14 +202,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bits_come_back(bits in proptest::collection::vec(any::<u64>(), 0..400)) {
+        fn any_bits_come_back(bits in proptest::collection::vec(any::<u64>(), 1..400)) {
             let values: Vec<f64> = bits.iter().map(|&bits| f64::from_bits(bits)).collect();
             let points = vec![[0.0; 3]; values.len()];
             let point_data = [Field::scalar("value", &values)];
             let grid = UnstructuredGrid { points: &points, cells: &[], point_data: &point_data, cell_data: &[], time: None };
-            let file = decode(&grid.to_bytes(Compression::Fast).unwrap());
+            let file = grid.to_bytes(Compression::Fast).unwrap();
             let expected: Vec<u8> = bits.iter().flat_map(|bits| bits.to_ne_bytes()).collect();
-            prop_assert_eq!(file.bytes("value"), expected);
+            prop_assert_eq!(decode(&file).bytes("value"), expected);
         }
     }
 

@@ -273,7 +273,6 @@ impl<'a> Field<'a> {
 #[cfg(test)]
 mod tests {
     use std::collections::BTreeMap;
-    use std::io::Cursor;
 
     use super::super::{Arrays, CellKind, PieceList};
     use super::*;
@@ -288,7 +287,7 @@ mod tests {
         let text = String::from_utf8(pieces[0].index("a").bytes().to_vec()).unwrap();
         let list = PieceList::parse(&text).unwrap();
         let names = [wanted, &[PieceList::NUMBERS]].concat();
-        let read = |piece: &&str| Arrays::read(&mut Cursor::new(&files[*piece][..]), &names).unwrap();
+        let read = |piece: &String| Arrays::read(&files[piece], &names).unwrap();
         list.joined(&list.pieces.iter().map(read).collect::<Vec<_>>(), wanted).unwrap()
     }
 
@@ -322,7 +321,7 @@ mod tests {
             let of = |first| grid.pieces(Cut { count, first, step, is_divided: false }, Compression::Fast).unwrap();
             let pieces: Vec<Pieces> = (0..step).map(of).collect();
             prop_assert_eq!(pieces.iter().map(|of| of.files.len()).sum::<usize>(), count);
-            let whole = Arrays::read(&mut Cursor::new(&whole[..]), &names).unwrap();
+            let whole = Arrays::read(&whole, &names).unwrap();
             prop_assert_eq!(together(&pieces, &names), whole);
         }
     }

@@ -25,7 +25,7 @@ use crate::tagged::error::{Fault, MeshError, Problem};
 /// shape, and everything that [`crate::read_msh`] refuses too.
 pub fn read_vtu(bytes: &[u8]) -> Result<Mesh, MeshError> {
     let read = || {
-        let document = Document::read(bytes)?;
+        let document = Document::read(bytes, &["UnstructuredGrid"])?;
         crate::tagged::assemble(grid::raw(&document, bytes)?, bytes)
     };
     read().map_err(|fault| fault.into_error(bytes, false))

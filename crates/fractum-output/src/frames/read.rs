@@ -1,7 +1,7 @@
 //! Reading the VTK files of a results folder again.
 
-use std::fs::{self, File};
-use std::io::{self, BufReader};
+use std::fs;
+use std::io;
 use std::path::Path;
 
 use fractum_vtk::{Arrays, Collection, PieceList};
@@ -17,8 +17,7 @@ pub fn read_arrays(path: &Path, wanted: &[&str]) -> Result<Arrays, ReadError> {
     if path.extension().is_some_and(|ending| ending == "pvtu" || ending == "pvtp") {
         return read_pieces(path, wanted);
     }
-    let mut file = BufReader::new(File::open(path).map_err(|error| refused(path, error))?);
-    Arrays::read(&mut file, wanted).ok_or_else(|| damaged(path))
+    Arrays::read(&fs::read(path).map_err(|error| refused(path, error))?, wanted).ok_or_else(|| damaged(path))
 }
 
 fn read_pieces(path: &Path, wanted: &[&str]) -> Result<Arrays, ReadError> {
@@ -26,9 +25,9 @@ fn read_pieces(path: &Path, wanted: &[&str]) -> Result<Arrays, ReadError> {
     let list = PieceList::parse(&text).ok_or_else(|| damaged(path))?;
     let names = [wanted, &[PieceList::NUMBERS]].concat();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let read = |piece: &&str| read_arrays(&folder.join(piece), &names);
+    let read = |piece: &String| read_arrays(&folder.join(piece), &names);
     let pieces = list.pieces.iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    list.joined(&pieces, wanted).map_err(|piece| damaged(&folder.join(list.pieces[piece])))
+    list.joined(&pieces, wanted).map_err(|piece| damaged(&folder.join(&list.pieces[piece])))
 }
 
 /// Reads a `fields.pvd`.

@@ -35,6 +35,8 @@ pub enum Section {
     PointData,
     /// Fields in the cells.
     CellData,
+    /// What belongs to the whole, such as its time.
+    FieldData,
 }
 
 /// An array, not decoded yet.
@@ -63,9 +65,11 @@ pub(super) enum Stored {
 impl<'a> Document<'a> {
     /// Finds the arrays; decodes none.
     ///
+    /// - `kinds`: of VTK files that are wanted, such as `UnstructuredGrid`
+    ///
     /// # Errors
     /// Malformed files, other kinds of VTK files, several pieces, other compressors.
-    pub fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
+    pub fn read(bytes: &'a [u8], kinds: &[&str]) -> Result<Self, Fault> {
         let begin = if bytes.starts_with(BYTE_ORDER_MARK) { BYTE_ORDER_MARK.len() } else { 0 };
         let mut tags = Tags { bytes, at: begin };
         let mut document = Document::default();
@@ -76,7 +80,7 @@ impl<'a> Document<'a> {
         while let Some(tag) = tags.next()? {
             match tag.name {
                 "VTKFile" if !tag.closes => {
-                    document.head(&tag)?;
+                    document.head(&tag, kinds)?;
                     root = true;
                 }
                 _ if !root => return Err(not_vtk(&tag, bytes)),
@@ -92,7 +96,8 @@ impl<'a> Document<'a> {
                     }
                 }
                 "Points" => section = opens(&tag).then_some(Section::Points),
-                "Cells" => section = opens(&tag).then_some(Section::Cells),
+                "FieldData" => section = opens(&tag).then_some(Section::FieldData),
+                "Cells" | "Verts" | "Lines" | "Polys" => section = opens(&tag).then_some(Section::Cells),
                 "PointData" => section = opens(&tag).then_some(Section::PointData),
                 "CellData" => section = opens(&tag).then_some(Section::CellData),
                 "DataArray" if !tag.closes => {
@@ -112,9 +117,9 @@ impl<'a> Document<'a> {
         if root { Ok(document) } else { Err(Fault { at: 0, wrong: Wrong::Empty }) }
     }
 
-    fn head(&mut self, tag: &Tag) -> Result<(), Fault> {
+    fn head(&mut self, tag: &Tag, kinds: &[&str]) -> Result<(), Fault> {
         let kind = tag.attribute("type").unwrap_or_default();
-        if kind != "UnstructuredGrid" {
+        if !kinds.contains(&kind.as_str()) {
             let message = format!("a VTK file of type {kind}; expected UnstructuredGrid (.vtu): {SAVE_AS_VTU}");
             return Err(Fault::unsupported(tag.at, message));
         }

@@ -55,6 +55,40 @@ impl Document<'_> {
         }
     }
 
+    /// The bytes of all numbers of an array that is not stored as text, in the order of the file; none of damaged ones.
+    pub fn bytes(&self, array: &Array) -> Option<Vec<u8>> {
+        let mut source = self.source(array)?;
+        let length = match self.word(&mut source)? {
+            length if !self.compressed => length,
+            0 => 0,
+            blocks => {
+                let [size, last] = [self.word(&mut source)?, self.word(&mut source)?];
+                (blocks - 1).checked_mul(size)?.checked_add(if last == 0 { size } else { last })?
+            }
+        };
+        let mut source = self.source(array)?;
+        if self.compressed { self.inflated(&mut source, length) } else { self.plain(&mut source, length) }
+    }
+
+    /// All numbers of an array as doubles; none of damaged ones, and of other types.
+    pub fn numbers(&self, array: &Array) -> Option<Vec<f64>> {
+        let size = array.kind.trim_start_matches(char::is_alphabetic).parse::<usize>().ok()? / 8;
+        let count = match &array.stored {
+            Stored::Text(text) => text.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count(),
+            _ => self.bytes(array)?.len().checked_div(size)?,
+        };
+        self.reals(array, count).ok()
+    }
+
+    /// Where an array begins; none beyond the end of the file.
+    fn source<'s>(&'s self, array: &'s Array) -> Option<Source<'s>> {
+        let (data, encoded) = match &array.stored {
+            Stored::Appended(offset) => (self.appended.get(*offset..)?, self.encoded),
+            Stored::Base64(text) | Stored::Text(text) => (&text[..], true),
+        };
+        Some(Source { data, encoded, pending: Vec::new() })
+    }
+
     fn decoded<const SIZE: usize, N>(
         &self,
         array: &Array,
@@ -68,13 +102,7 @@ impl Document<'_> {
             );
             Fault::inconsistent(array.at, message)
         };
-        let mut source = match &array.stored {
-            Stored::Appended(offset) => {
-                let data = self.appended.get(*offset..).ok_or_else(wrong)?;
-                Source { data, encoded: self.encoded, pending: Vec::new() }
-            }
-            Stored::Base64(text) | Stored::Text(text) => Source { data: text, encoded: true, pending: Vec::new() },
-        };
+        let mut source = self.source(array).ok_or_else(wrong)?;
         let length = count.checked_mul(SIZE).ok_or_else(wrong)?;
         let bytes = if self.compressed { self.inflated(&mut source, length) } else { self.plain(&mut source, length) };
         let in_order = |group: &[u8]| {

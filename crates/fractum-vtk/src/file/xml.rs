@@ -4,12 +4,12 @@ use super::fault::Fault;
 use crate::text::quote;
 
 /// A tag, and the text between it and the one before.
-pub(super) struct Tag<'a> {
+pub(crate) struct Tag<'a> {
     pub(super) text: &'a [u8],
     pub(super) at: usize,
-    pub(super) name: &'a str,
+    pub(crate) name: &'a str,
     /// `</name>`
-    pub(super) closes: bool,
+    pub(crate) closes: bool,
     /// `<name/>`
     pub(super) empty: bool,
     /// What stands behind the name.
@@ -17,9 +17,19 @@ pub(super) struct Tag<'a> {
 }
 
 /// The tags of a file.
-pub(super) struct Tags<'a> {
+pub(crate) struct Tags<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) at: usize,
+}
+
+/// All tags of a text; none of one that is malformed.
+pub(crate) fn tags(text: &str) -> Option<Vec<Tag<'_>>> {
+    let mut tags = Tags { bytes: text.as_bytes(), at: 0 };
+    let mut all = Vec::new();
+    while let Some(tag) = tags.next().ok()? {
+        all.push(tag);
+    }
+    Some(all)
 }
 
 impl<'a> Tags<'a> {
@@ -71,7 +81,7 @@ fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
 
 impl Tag<'_> {
     /// The value of an attribute.
-    pub(super) fn attribute(&self, name: &str) -> Option<String> {
+    pub(crate) fn attribute(&self, name: &str) -> Option<String> {
         let mut rest = self.rest;
         while let Some((before, after)) = rest.split_once('=') {
             let after = after.trim_start();
@@ -86,7 +96,7 @@ impl Tag<'_> {
     }
 
     /// A count among the attributes, 0 where it is not given.
-    pub(super) fn count(&self, name: &str) -> Result<usize, Fault> {
+    pub(crate) fn count(&self, name: &str) -> Result<usize, Fault> {
         let Some(text) = self.attribute(name) else { return Ok(0) };
         text.trim().parse().map_err(|_| {
             Fault::unexpected(self.at, quote(text.as_bytes()), format!("a whole number of at least 0 as {name}"))

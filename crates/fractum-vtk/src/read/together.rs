@@ -2,35 +2,36 @@
 
 use std::collections::BTreeMap;
 
-use super::{Arrays, attributes};
+use super::Arrays;
+use crate::file::tags;
 use crate::pieces::NUMBERS;
 
 /// What a PVTU or PVTP lists.
 #[derive(Clone, Debug)]
-pub struct PieceList<'a> {
+pub struct PieceList {
     /// Files of the pieces, relative to that of the list.
-    pub pieces: Vec<&'a str>,
+    pub pieces: Vec<String>,
     /// Arrays over points, and the components of each.
-    of_points: BTreeMap<&'a str, usize>,
+    of_points: BTreeMap<String, usize>,
 }
 
-impl<'a> PieceList<'a> {
+impl PieceList {
     /// The array that numbers the points of each piece: without it the pieces cannot be joined.
     pub const NUMBERS: &'static str = NUMBERS;
 
     /// Reads the text of such a list; none of one that these writers did not make.
-    pub fn parse(text: &'a str) -> Option<Self> {
+    pub fn parse(text: &str) -> Option<Self> {
         let mut list = PieceList { pieces: Vec::new(), of_points: BTreeMap::new() };
-        let mut section = "";
-        for tag in text.split('<') {
-            let attributes = attributes(tag);
-            if ["PPoints>", "PPointData>", "PCellData>"].iter().any(|name| tag.starts_with(name)) {
-                section = tag;
-            } else if tag.starts_with("PDataArray") && !section.starts_with("PCellData") {
-                let components = attributes.get("NumberOfComponents").map_or(Some(1), |text| text.parse().ok())?;
-                list.of_points.insert(attributes.get("Name")?, components);
-            } else if tag.starts_with("Piece") {
-                list.pieces.push(attributes.get("Source")?);
+        let mut of_points = false;
+        for tag in tags(text)? {
+            match tag.name {
+                "PPoints" | "PPointData" => of_points = !tag.closes,
+                "PDataArray" if of_points => {
+                    let components = tag.count("NumberOfComponents").ok()?.max(1);
+                    list.of_points.insert(tag.attribute("Name")?, components);
+                }
+                "Piece" => list.pieces.push(tag.attribute("Source")?),
+                _ => {}
             }
         }
         (!list.pieces.is_empty()).then_some(list)
@@ -60,7 +61,7 @@ impl<'a> PieceList<'a> {
 fn add(
     whole: &mut BTreeMap<String, Vec<f64>>,
     piece: &Arrays,
-    of_points: &BTreeMap<&str, usize>,
+    of_points: &BTreeMap<String, usize>,
     most: usize,
 ) -> Option<()> {
     let numbers: Vec<usize> = piece.get(NUMBERS).iter().map(|&number| number as usize).collect();
