@@ -55,6 +55,9 @@ pub use neighbour::{halved, scrambled};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;
 
+/// The formats beside Gmsh's, for messages.
+const OTHERS: &str = "an Abaqus input file (.inp) or a VTK grid (.vtu)";
+
 /// Reads a mesh: a Gmsh file, an Abaqus input file or a grid of VTK, by its first bytes.
 ///
 /// # Errors

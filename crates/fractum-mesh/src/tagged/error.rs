@@ -33,12 +33,10 @@ impl fmt::Display for Place {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Problem {
     /// No bytes, or blank lines only.
-    #[error("the file is empty; expected a Gmsh mesh (.msh), an Abaqus input file (.inp) or a VTK grid (.vtu)")]
+    #[error("the file is empty; expected a Gmsh mesh (.msh), {}", crate::OTHERS)]
     Empty,
     /// The file is something else.
-    #[error(
-        "found {found}; expected a Gmsh mesh, which begins with $MeshFormat, an Abaqus input file or a VTK grid (.vtu){hint}"
-    )]
+    #[error("found {found}; expected a Gmsh mesh, which begins with $MeshFormat, {}{hint}", crate::OTHERS)]
     NotGmsh {
         /// Start of the file.
         found: String,
