@@ -27,7 +27,7 @@ pub(super) fn plate() -> Mesh {
     let plate = rectangle([0.0, 0.0], [200.0, 100.0], ["", "right", "", "left"]);
     let holes = [hole([70.0, 40.0], 12.0, ""), hole([130.0, 60.0], 12.0, "")];
     let [first, second] = holes;
-    fill(&[plate, first, second], "plate", &|[x, _]| graded((x - 100.0).abs(), [3.5, 8.0], [50.0, 70.0]), 1)
+    fill(&[plate, first, second], "plate", &|[x, _]| graded((x - 100.0).abs(), [3.2, 7.2], [50.0, 70.0]), 1)
 }
 
 pub(super) fn brazilian() -> Mesh {
@@ -37,7 +37,7 @@ pub(super) fn brazilian() -> Mesh {
     let [strip, side] = [2.0 * strip, PI - 2.0 * strip];
     let pieces = vec![arc(strip, "top"), arc(side, ""), arc(strip, "bottom"), arc(side, "")];
     let disc = Outline { start: [50.0 * sin, 50.0 * cos], pieces };
-    fill(&[disc], "disc", &|[x, _]| graded(x.abs(), [1.5, 3.0], [0.0, 50.0]), 1)
+    fill(&[disc], "disc", &|[x, _]| graded(x.abs(), [1.4, 2.2], [10.0, 50.0]), 1)
 }
 
 pub(super) fn beam() -> Mesh {
@@ -57,25 +57,25 @@ pub(super) fn beam() -> Mesh {
         point([-200.0, 0.0], ""),
     ];
     let beam = Outline { start: [-200.0, 0.0], pieces };
-    fill(&[beam], "beam", &|[x, _]| graded(x.abs(), [3.0, 12.0], [4.0, 150.0]), 1)
+    fill(&[beam], "beam", &|[x, _]| graded(x.abs(), [2.7, 9.5], [6.0, 150.0]), 1)
 }
 
 pub(super) fn blast() -> Mesh {
     let rock = rectangle([-2.0, -2.0], [2.0, 1.0], ["far", "far", "", "far"]);
-    let size = |[x, y]: [f64; 2]| 0.012 + 0.025 * (x * x + y * y).sqrt();
+    let size = |[x, y]: [f64; 2]| 0.0115 + 0.0235 * (x * x + y * y).sqrt();
     fill(&[rock, hole([0.0, 0.0], 0.05, "hole")], "rock", &size, 1)
 }
 
 pub(super) fn bracket() -> Mesh {
-    let cells = mirrored_cells([20, 20, 7], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
-    with_groups(&scrambled(&cells, 0.4, 1), "bracket", &[("y+", "top"), ("x+", "end")])
+    let cells = mirrored_cells([20, 20, 6], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
+    with_groups(&scrambled(&cells, 0.3, 1), "bracket", &[("y+", "top"), ("x+", "end")])
 }
 
 pub(super) fn impact() -> Mesh {
-    let mut cells = mirrored_cells([22, 22, 4], Vec3::new(200.0, 200.0, 30.0), |_| true);
+    let mut cells = mirrored_cells([22, 22, 3], Vec3::new(200.0, 200.0, 30.0), |_| true);
     cells.nodes.iter_mut().for_each(|node| *node -= Vec3::new(100.0, 100.0, 0.0));
     let rim = ["x-", "x+", "y-", "y+"].map(|side| (side, "rim"));
-    with_groups(&scrambled(&cells, 0.4, 1), "slab", &rim)
+    with_groups(&scrambled(&cells, 0.3, 1), "slab", &rim)
 }
 
 /// The mesh with other names: of all tetrahedra, and of some sides; the others have no triangles.
