@@ -313,7 +313,7 @@ group = "body"
 material = "low"
 plane = "stress"
 thickness = "1 mm"
-formulation = "FORMULATION"
+formulation = "smoothed"
 
 [[bodies]]
 name = "up"
@@ -322,7 +322,7 @@ group = "up"
 material = "up"
 plane = "stress"
 thickness = "1 mm"
-formulation = "FORMULATION"
+formulation = "smoothed"
 
 [heat]
 initial_temperature = "300 K"
@@ -374,16 +374,16 @@ fn layers_at_rest_bend_as_timoshenko_says() {
     let (n, height) = (200.0 / 70.0, 4e-3);
     let curvature = 6.0 * 1e-5 * 100.0 * 4.0 / (height * (12.0 + (1.0 + n) * (1.0 + 1.0 / n)));
     let tip = 0.5 * curvature * 0.06f64.powi(2);
-    for (nu, formulation) in [("0", "smoothed"), ("0.3", "smoothed"), ("0.45", "standard")] {
-        let case = LAYERS.replace("NU", nu).replace("FORMULATION", formulation);
+    for nu in ["0", "0.3", "0.45"] {
+        let case = LAYERS.replace("NU", nu);
         let place = Workplace::with_mesh(&case, &mesh);
         let one = run(&place, "one", "1");
         let found = one["probes"]["tip"]["final"].as_f64().unwrap();
-        assert!((found / tip - 1.0).abs() < 0.01, "nu {nu}, {formulation}: {found} m of {tip} m");
+        assert!((found / tip - 1.0).abs() < 0.01, "nu {nu}: {found} m of {tip} m");
         assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-9, "{}", one["energy"]);
         assert_eq!(one["time"]["at_rest"], false, "instants are seconds, no load factors");
     }
-    let place = Workplace::with_mesh(&LAYERS.replace("NU", "0.3").replace("FORMULATION", "smoothed"), &mesh);
+    let place = Workplace::with_mesh(&LAYERS.replace("NU", "0.3"), &mesh);
     let one = run(&place, "one", "1");
     for other in [run(&place, "two", "2"), resumed(&place, "1")] {
         assert_eq!((&other["state_hash"], &other["energy"]), (&one["state_hash"], &one["energy"]));
@@ -439,7 +439,7 @@ fix = "z"
 [solver]
 kind = "static"
 end = "100 s"
-step = "0.25 s"
+step = "0.1 s"
 
 [[probes]]
 name = "pull"
