@@ -6,7 +6,7 @@
 use fractum_kernels::damage::{EdgeDamage, Seen, Taken};
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
-use crate::body::{Formulation, Kinematics};
+use crate::body::Kinematics;
 use crate::cells::block::Cells;
 use crate::motion::phase_damage::{phase_values, raise_phases, trial_phases};
 use crate::solid::evaluate::{Block, BlockLaw};
@@ -337,10 +337,5 @@ impl Solid {
     /// Whether some body may be damaged.
     pub fn has_damage(&self) -> bool {
         self.bodies.iter().any(|model| model.body.damage.is_some())
-    }
-
-    /// Whether every body has plain elements: its cells couple the nodes of an element only.
-    pub fn is_standard(&self) -> bool {
-        self.bodies.iter().all(|model| model.body.formulation == Formulation::Standard)
     }
 }
