@@ -47,17 +47,20 @@ fn run(
     Ok((outcome.folder, outcome.summary.status == Status::Interrupted))
 }
 
+/// Keys with their values: what all runs set, and what is varied.
+type Given = (Vec<(String, String)>, Vec<(String, Vec<String>)>);
+
 /// A run of a study: its folder, how it ended, why it failed, and what it varies and came to, each with its name.
 type Ran = (PathBuf, &'static str, String, Vec<(String, String)>, Vec<(String, f64)>);
 
 /// Does the runs of a study and writes its tables, as `fractum study` does.
 ///
-/// - `vary`: keys with their values; `begin`: runs at the same time, threads of each, whether what has finished is run anew
+/// - `begin`: runs at the same time, threads of each, whether what has finished is run anew
 #[pyfunction]
 fn study(
     py: Python<'_>,
     case: PathBuf,
-    given: (Vec<(String, String)>, Vec<(String, Vec<String>)>),
+    given: Given,
     compare: Vec<String>,
     output: PathBuf,
     begin: (usize, Option<usize>, bool),
