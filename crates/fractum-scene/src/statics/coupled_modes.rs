@@ -1,7 +1,7 @@
 //! Natural vibrations of solids and bonded bodies together: three unknowns a node, three displacements and three rotations
 //! a particle. A tied particle has no unknowns: its motion is that of the facet, and its mass is that of the nodes.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use fractum_math::{Mat3, Vec3};
 use fractum_sparse::BlockMatrix;
@@ -29,7 +29,7 @@ pub(super) fn find(scene: &Scene, settings: ModesSettings, stop: fn() -> bool) -
     let beams = beams(bonded);
     let mut has_beam = vec![false; particles.len()];
     beams.iter().for_each(|&(i, j, _)| [i, j].iter().for_each(|&end| has_beam[end as usize] = true));
-    let tied: HashMap<u32, Follows> = scene.ties.motions().map(|(particle, by)| (particle, by.to_vec())).collect();
+    let tied: BTreeMap<u32, Follows> = scene.ties.motions().map(|(particle, by)| (particle, by.to_vec())).collect();
     let moves_alone = |i: usize| has_beam[i] && !tied.contains_key(&(i as u32));
     let row = |particle: usize| nodes + 2 * particle;
     let follows = |particle: u32| -> Follows {
