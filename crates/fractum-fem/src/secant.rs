@@ -125,28 +125,12 @@ impl Solid {
 
     /// Forces that hold the displacements `field` against the secant stiffness and thermal strains [N].
     pub fn secant_force(&self, damage: &CellDamage, field: &[Vec3], force: &mut [Vec3]) {
-        self.add_up(damage, field, 1.0, force);
+        add_up(self, damage, field, 1.0, force);
     }
 
     /// Forces that change with the displacements by `change`, K u [N].
     pub fn secant_change(&self, damage: &CellDamage, change: &[Vec3], force: &mut [Vec3]) {
-        self.add_up(damage, change, 0.0, force);
-    }
-
-    /// - `share`: part of the thermal stresses that counts
-    fn add_up(&self, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
-        force.fill(Vec3::zeros());
-        self.for_each_cell(damage, |cell| {
-            let mut h = Mat3::zeros();
-            for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
-                h += field[node as usize] * Vec3::from(*g).transpose();
-            }
-            let stress =
-                (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace() - share * cell.thermal);
-            for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
-                force[node as usize] += stress * Vec3::from(*g);
-            }
-        });
+        add_up(self, damage, change, 0.0, force);
     }
 
     /// Damage of the cells as it stands.
@@ -185,39 +169,12 @@ impl Solid {
 
     /// Effective stress of every edge that may be damaged under displacements [Pa].
     pub fn effective_stresses(&self, field: &[Vec3], stresses: &mut Vec<Sym3>) {
-        self.stresses(field, Cells::elastic_strain, stresses);
+        add_stresses(self, field, Cells::elastic_strain, stresses);
     }
 
     /// What a change of the displacements adds to [`Solid::effective_stresses`] [Pa]; linear in it.
     pub fn effective_stress_changes(&self, change: &[Vec3], stresses: &mut Vec<Sym3>) {
-        self.stresses(change, |_, _, strain| strain, stresses);
-    }
-
-    /// - `elastic`: the strain that stress belongs to, of a cell with a strain
-    fn stresses(&self, field: &[Vec3], elastic: impl Fn(&Cells, usize, Sym3) -> Sym3, stresses: &mut Vec<Sym3>) {
-        stresses.clear();
-        let stress = |block: &Block, cell: usize| {
-            let strain = Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
-            self.bodies[block.body].hooke.stress(elastic(&block.cells, cell, strain))
-        };
-        for block in self.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
-            stresses.extend((0..block.cells.len()).map(|cell| stress(block, cell)));
-        }
-        for model in &self.bodies {
-            let Some(standard) = &model.standard else { continue };
-            let element = |e: u32| {
-                let (block, cell) = model.location.of(e);
-                stress(&self.blocks[block as usize], cell as usize)
-            };
-            for edge in 0..standard.field.state.len() {
-                let (mut sum, mut count) = (Sym3::ZERO, 0);
-                for &e in standard.elements_of_edge.row(edge).iter().filter(|&&e| model.alive[e as usize]) {
-                    sum += element(e);
-                    count += 1;
-                }
-                stresses.push(sum * (1.0 / f64::from(count.max(1))));
-            }
-        }
+        add_stresses(self, change, |_, _, strain| strain, stresses);
     }
 
     /// What each of these edges sees under its effective stress; nothing where the equivalent stress surely stays below
@@ -337,5 +294,57 @@ impl Solid {
     /// Whether some body may be damaged.
     pub fn has_damage(&self) -> bool {
         self.bodies.iter().any(|model| model.body.damage.is_some())
+    }
+}
+
+/// Adds up the nodal forces of the cells under a field.
+///
+/// - `share`: part of the thermal stresses that counts
+fn add_up(solid: &Solid, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
+    force.fill(Vec3::zeros());
+    solid.for_each_cell(damage, |cell| {
+        let mut h = Mat3::zeros();
+        for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
+            h += field[node as usize] * Vec3::from(*g).transpose();
+        }
+        let stress =
+            (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace() - share * cell.thermal);
+        for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
+            force[node as usize] += stress * Vec3::from(*g);
+        }
+    });
+}
+
+/// Effective stresses of the edges that may be damaged, in the order of [`Solid::damage_points`].
+///
+/// - `elastic`: the strain that stress belongs to, of a cell with a strain
+fn add_stresses(
+    solid: &Solid,
+    field: &[Vec3],
+    elastic: impl Fn(&Cells, usize, Sym3) -> Sym3,
+    stresses: &mut Vec<Sym3>,
+) {
+    stresses.clear();
+    let stress = |block: &Block, cell: usize| {
+        let strain = Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
+        solid.bodies[block.body].hooke.stress(elastic(&block.cells, cell, strain))
+    };
+    for block in solid.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
+        stresses.extend((0..block.cells.len()).map(|cell| stress(block, cell)));
+    }
+    for model in &solid.bodies {
+        let Some(standard) = &model.standard else { continue };
+        let element = |e: u32| {
+            let (block, cell) = model.location.of(e);
+            stress(&solid.blocks[block as usize], cell as usize)
+        };
+        for edge in 0..standard.field.state.len() {
+            let (mut sum, mut count) = (Sym3::ZERO, 0);
+            for &e in standard.elements_of_edge.row(edge).iter().filter(|&&e| model.alive[e as usize]) {
+                sum += element(e);
+                count += 1;
+            }
+            stresses.push(sum * (1.0 / f64::from(count.max(1))));
+        }
     }
 }

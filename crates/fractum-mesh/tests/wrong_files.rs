@@ -86,7 +86,7 @@ fn foreign_and_empty_files_are_named() {
         message(b" \r\n\n"),
         "line 1: the file is empty; expected a Gmsh mesh (.msh), an Abaqus input file (.inp) or a VTK grid (.vtu)"
     );
-    let start = "expected a Gmsh mesh, which begins with $MeshFormat, an Abaqus input file or a VTK grid (.vtu)";
+    let start = "expected a Gmsh mesh, which begins with $MeshFormat, an Abaqus input file (.inp) or a VTK grid (.vtu)";
     assert_eq!(message(b"hello\n"), format!("line 1: found `hello`; {start}"));
     assert!(message(b"$NOD\n8\n").contains("this is MSH version 1, convert with: gmsh in.msh -save"));
     assert!(message(b"solid box\nfacet normal").contains("convert with: gmsh FILE -save"));

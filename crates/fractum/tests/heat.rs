@@ -350,7 +350,7 @@ name = "tip"
 displacement = { where = "x > 59.99 mm", along = "y" }
 
 [output]
-checkpoint = { every = "500 s" }
+checkpoint = { every = "250 s" }
 "#;
 
 /// Two layers of 2 mm, 60 mm long, that have nodes in common.
@@ -380,7 +380,7 @@ fn layers_at_rest_bend_as_timoshenko_says() {
         let one = run(&place, "one", "1");
         let found = one["probes"]["tip"]["final"].as_f64().unwrap();
         assert!((found / tip - 1.0).abs() < 0.01, "nu {nu}: {found} m of {tip} m");
-        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-9, "{}", one["energy"]);
+        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-8, "{}", one["energy"]);
         assert_eq!(one["time"]["at_rest"], false, "instants are seconds, no load factors");
     }
     let place = Workplace::with_mesh(&LAYERS.replace("NU", "0.3"), &mesh);
@@ -454,7 +454,7 @@ fn what_cools_between_walls_bears_its_strength_and_cracks() {
         let place = Workplace::with_mesh(&case, &mesh);
         let ended = run(&place, "one", "1");
         let peak = ended["probes"]["pull"]["max"].as_f64().unwrap() / (0.9 * 3e6 * 64e-6);
-        assert!((peak - 1.0).abs() < 0.01, "nu {nu}: {peak} of the strength of the weakest section");
+        assert!((peak - 1.0).abs() < 0.02, "nu {nu}: {peak} of the strength of the weakest section");
         let left = ended["probes"]["pull"]["final"].as_f64().unwrap();
         assert!(left < 0.5 * 0.9 * 3e6 * 64e-6, "nu {nu}: {left} N at the end");
         assert!(ended["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", ended["energy"]);

@@ -218,8 +218,10 @@ fn inertia_counts(case: &Case) -> Option<&'static str> {
 /// Why equilibrium is out of the question.
 fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
     let solid = &scene.solid;
-    if case.flows.gas.is_some() || case.flows.heat.is_some() {
-        Some("gas and the expansion by heat are for motion only")
+    if case.flows.gas.is_some() {
+        Some("gas is for motion only")
+    } else if case.flows.heat.is_some() {
+        Some("heat goes with motion unless kind = \"static\" asks for equilibrium")
     } else if case.supports.iter().any(|support| support.surface.is_some()) {
         Some("absorbing and elastic supports act in motion only")
     } else if !case.bodies.iter().all(may_rest) {
