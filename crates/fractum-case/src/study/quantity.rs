@@ -154,7 +154,7 @@ mod tests {
             ("absmax(load)", "absmax(load)", 5e3, "N"),
             ("probes.load.min", "probes.load.min", -5e3, "N"),
             ("when = time_of_max(load)", "when", 2e-3, "s"),
-            ("strength = max(load) / (width * 10 cm)", "strength", 2e5, "Pa"),
+            ("strength = max(load) / (width * 1 m)", "strength", 2e4, "Pa"),
             ("counts.fragments", "counts.fragments", 3.0, ""),
         ] {
             assert_eq!(told(text), (label.to_owned(), value, unit.to_owned()), "{text}");

@@ -62,12 +62,12 @@ pub(super) fn beam() -> Mesh {
 
 pub(super) fn blast() -> Mesh {
     let rock = rectangle([-2.0, -2.0], [2.0, 1.0], ["far", "far", "", "far"]);
-    let size = |[x, y]: [f64; 2]| 0.0115 + 0.0235 * (x * x + y * y).sqrt();
+    let size = |[x, y]: [f64; 2]| 0.012 + 0.0225 * (x * x + y * y).sqrt();
     fill(&[rock, hole([0.0, 0.0], 0.05, "hole")], "rock", &size, 1)
 }
 
 pub(super) fn bracket() -> Mesh {
-    let cells = mirrored_cells([20, 20, 6], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
+    let cells = mirrored_cells([20, 20, 7], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
     with_groups(&scrambled(&cells, 0.3, 1), "bracket", &[("y+", "top"), ("x+", "end")])
 }
 
