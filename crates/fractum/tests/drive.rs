@@ -10,7 +10,7 @@ use crate::common::Workplace;
 /// A bar that nothing holds.
 const FREE_BAR: &str = r#"fractum = 1
 mesh = { file = "bar.msh" }
-bodies = [{ name = "bar", kind = "solid", group = "body", material = "soft" }]
+bodies = [{ name = "bar", kind = "solid", group = "body", material = "soft", kinematics = "small" }]
 solver = { kind = "explicit", end = "20 ms" }
 output = { history = { every = "0.1 ms" } }
 loads = [{ gravity = { y = "0 m/s^2" } }]

@@ -343,14 +343,14 @@ fix = "y"
 [solver]
 kind = "static"
 end = "1000 s"
-step = "250 s"
+step = "50 s"
 
 [[probes]]
 name = "tip"
 displacement = { where = "x > 59.99 mm", along = "y" }
 
 [output]
-checkpoint = { every = "250 s" }
+checkpoint = { every = "1 us" }
 "#;
 
 /// Two layers of 2 mm, 60 mm long, that have nodes in common.
