@@ -155,7 +155,7 @@ mod tests {
             ("probes.load.min", "probes.load.min", -5e3, "N"),
             ("when = time_of_max(load)", "when", 2e-3, "s"),
             ("strength = max(load) / (width * 1 m)", "strength", 2e4, "Pa"),
-            ("counts.fragments", "counts.fragments", 3.0, ""),
+            ("counts.fragments", "counts.fragments", 3.0, "1"),
         ] {
             assert_eq!(told(text), (label.to_owned(), value, unit.to_owned()), "{text}");
         }
