@@ -19,6 +19,7 @@ pub mod damage;
 pub mod elementary;
 #[cfg(not(feature = "std"))]
 mod exact;
+pub mod interface;
 mod lane;
 pub mod lanes;
 pub mod material;

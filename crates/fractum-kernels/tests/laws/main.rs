@@ -6,6 +6,7 @@ mod bond;
 mod contact;
 mod damage;
 mod draw;
+mod interface;
 mod material;
 
 use fractum_kernels::bond::InterfaceFailure;
@@ -116,6 +117,12 @@ const LAWS: &[Row] = &[
             bond::bond(draw, law)
         },
     },
+    Row { law: "interface with a stiffness, one mode to the end", holds: interface::spring_proportional },
+    Row { law: "interface with a stiffness, any way", holds: interface::spring_any_way },
+    Row { law: "interface with a stiffness, sliding under pressure", holds: interface::spring_sliding },
+    Row { law: "stiff interface, one mode to the end", holds: interface::stiff_proportional },
+    Row { law: "stiff interface, any way", holds: interface::stiff_any_way },
+    Row { law: "stiff interface, sliding under pressure", holds: interface::stiff_sliding },
 ];
 
 #[test]

@@ -1,0 +1,154 @@
+use serde::{Deserialize, Serialize};
+
+use super::{InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, tangential};
+use crate::Vec3;
+use crate::contact::slip_to_cone;
+#[cfg(not(feature = "std"))]
+use crate::exact::Exact as _;
+
+/// Looks at friction and strength, which depend on each other.
+const LOOKS: usize = 40;
+/// Change of them that is rounding.
+const ROUNDING: f64 = 1e-14;
+/// Least ratio of the jump at the end of softening to that at its onset.
+const LEAST_RATIO: f64 = 1.0 + 1e-6;
+
+/// An interface with a stiffness. A share 1 - D of each point is whole and elastic; the rest is broken, bears pressure, and rubs
+/// (Alfano and Sacco 2006). Where softening begins on an ellipse of the stresses and ends with the energy of the mode, as in Camanho,
+/// Davila and de Moura (2003); pressure raises the strength against sliding by μ p.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SpringInterface {
+    /// What it bears.
+    pub law: InterfaceLaw,
+    /// K_n and K_s [Pa/m], > 0.
+    pub stiffness: [f64; 2],
+}
+
+/// Onset and end of softening for a jump.
+struct Loading {
+    /// Stress over strength on the ellipse.
+    ratio: f64,
+    /// Jump at the end of linear softening over that at the onset; for exponential softening energy over twice that at the onset.
+    end: f64,
+}
+
+impl SpringInterface {
+    /// Traction under a jump, and the history after it.
+    ///
+    /// - `jump`: opening, then slip along two directions [m]
+    #[inline]
+    pub fn load(&self, jump: Vec3, state: &mut InterfaceState) -> InterfaceForce {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        let pressure = normal * (-jump.x).max(0.0);
+        if state.secant > 0.0 {
+            self.soften(&jump, pressure, state);
+        }
+        let friction = law.friction_at(state.residual);
+        let slipped = Vec3::new(0.0, state.slip[0], state.slip[1]);
+        let trial = (Vec3::new(0.0, jump.y, jump.z) - slipped) * across;
+        let (size, mut rests) = (trial.norm(), pressure);
+        let mut stick = trial;
+        for _ in 0..LOOKS {
+            stick = slip_to_cone(trial, size, friction * rests);
+            let slip = Vec3::new(0.0, jump.y, jump.z) - stick / across;
+            let next = normal * (law.dilated(slip.norm()) - jump.x).max(0.0);
+            let change = (next - rests).abs();
+            rests = next;
+            if change <= ROUNDING * next {
+                break;
+            }
+        }
+        state.slip = [jump.y - stick.y / across, jump.z - stick.z / across];
+        let (whole, broken) = (state.secant, 1.0 - state.secant);
+        let elastic = Vec3::new(normal * jump.x, across * jump.y, across * jump.z);
+        InterfaceForce {
+            cohesive: Vec3::new(elastic.x.max(0.0), elastic.y, elastic.z) * whole,
+            friction: stick * broken,
+            contact: whole * pressure + broken * rests,
+            stored: 0.5 * (whole * elastic.dot(&jump) + broken * (stick.dot(&stick) / across + rests * rests / normal)),
+        }
+    }
+
+    /// Stiffness by which the present traction changes with the jump [Pa/m]: normal, tangential. What gives way counts with a part of its secant.
+    ///
+    /// - `force`, `state`: those of [`SpringInterface::load`] at `jump`; `before`: the history at the last equilibrium
+    /// - `giving`: that part, 0 to 1
+    #[inline]
+    pub fn stiffness_at(
+        &self,
+        jump: &Vec3,
+        force: &InterfaceForce,
+        [before, state]: [&InterfaceState; 2],
+        giving: f64,
+    ) -> [f64; 2] {
+        let [normal, across] = self.stiffness;
+        let whole = state.secant * if state.secant < before.secant { giving } else { 1.0 };
+        let broken = 1.0 - state.secant;
+        let trial = tangential(&Vec3::new(0.0, jump.y - before.slip[0], jump.z - before.slip[1]));
+        let held = tangential(&Vec3::new(0.0, jump.y - state.slip[0], jump.z - state.slip[1]));
+        let rubs = match (force.contact > 0.0, held < trial) {
+            (false, _) => 0.0,
+            (true, false) => 1.0,
+            (true, true) => giving * held / trial,
+        };
+        let closed = if jump.x < 0.0 {
+            normal
+        } else {
+            whole * normal + if force.contact > 0.0 { broken * normal } else { 0.0 }
+        };
+        [closed, (whole + broken * rubs) * across]
+    }
+
+    /// Lets the strength go down where the jump asks for it.
+    #[inline]
+    fn soften(&self, jump: &Vec3, pressure: f64, state: &mut InterfaceState) {
+        for _ in 0..LOOKS {
+            let before = state.residual;
+            let Some(Loading { ratio, end }) = self.loading(jump, pressure, before) else { return };
+            let residual = match self.law.softening {
+                InterfaceSoftening::Linear => ((end - ratio) / (end - 1.0)).max(0.0),
+                InterfaceSoftening::Exponential => crate::elementary::exp((1.0 - ratio) / (end - 0.5)),
+            };
+            state.secant = state.secant.min(residual / ratio);
+            state.residual = before.min(residual);
+            if pressure == 0.0 || before - state.residual <= ROUNDING {
+                return;
+            }
+        }
+    }
+
+    /// Where a jump lies between onset and end; none below the onset.
+    #[inline]
+    fn loading(&self, jump: &Vec3, pressure: f64, residual: f64) -> Option<Loading> {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        let opens = normal * jump.x.max(0.0);
+        let slides = (across * tangential(jump) - law.friction_at(residual) * pressure).max(0.0);
+        let [first, second] = [opens / law.tensile_strength, slides / law.cohesion];
+        let square = first * first + second * second;
+        if square <= 1.0 {
+            return None;
+        }
+        let [opening, sliding] = [opens * opens / (normal * square), slides * slides / (across * square)];
+        let energy = law.energy(sliding / (opening + sliding)) / (opening + sliding);
+        let end = match law.softening {
+            InterfaceSoftening::Linear => (2.0 * energy).max(LEAST_RATIO),
+            InterfaceSoftening::Exponential => energy.max(0.5 * LEAST_RATIO),
+        };
+        Some(Loading { ratio: square.sqrt(), end })
+    }
+
+    /// Least energy over that which the interface stores up to its strength, over all modes: softening snaps back where it is 1 or less.
+    pub fn least_ductility(&self) -> f64 {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        if !law.is_bonded() {
+            return f64::INFINITY;
+        }
+        let of_mode = |step: u32| {
+            let share = f64::from(step) / 64.0;
+            let opening = (1.0 - share) * law.tensile_strength * law.tensile_strength / normal;
+            let sliding = share * law.cohesion * law.cohesion / across;
+            2.0 * law.energy(sliding / (opening + sliding)) / (opening + sliding)
+        };
+        (0..=64).map(of_mode).fold(f64::INFINITY, f64::min)
+    }
+}
