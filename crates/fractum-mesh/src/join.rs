@@ -81,6 +81,7 @@ pub fn joined(parts: &[Mesh]) -> Result<Mesh, JoinError> {
         groups,
         notices,
         whole: None,
+        cuts: Vec::new(),
     };
     mesh.note_empty_groups();
     Ok(mesh)

@@ -4,6 +4,7 @@
 //! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes
 //! - [`joined`]: one mesh of the files into which Gmsh writes its partitions
 //! - [`joined_bodies`]: bodies of which each has nodes of its own, joined where their faces conform
+//! - [`Mesh::cut`]: nodes doubled along faces inside of a mesh
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
@@ -32,6 +33,7 @@
 
 mod abaqus;
 mod coincident;
+mod cut;
 pub mod generate;
 mod gmsh;
 mod hints;
@@ -46,11 +48,12 @@ mod vtk;
 
 pub use abaqus::read_inp;
 pub use coincident::{Coincident, Joint, coincident_nodes, joined_bodies};
+pub use cut::{CutAlong, CutError};
 pub use fractum_math::Vec3;
 pub use gmsh::{MshFormat, partitions, read_msh, write_msh};
 pub use hints::hints;
 pub use join::{JoinError, joined};
-pub use mesh::{Group, Mesh, WholeMesh};
+pub use mesh::{CutFace, Group, Mesh, WholeMesh};
 pub use neighbour::{halved, scrambled};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;

@@ -36,6 +36,20 @@ pub struct Mesh {
     pub notices: Vec<String>,
     /// What is known of the whole mesh where this one lacks some of its tetrahedra; none where it is whole.
     pub whole: Option<Box<WholeMesh>>,
+    /// Faces along which its nodes have been doubled, see [`Mesh::cut`].
+    pub cuts: Vec<CutFace>,
+}
+
+/// A face along which a mesh was cut: its corners on both sides are nodes of their own, but for those at a tip of the cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CutFace {
+    /// Which cut it belongs to.
+    pub cut: u32,
+    /// Corners on the first and on the second side, in the same places; sides of triangles repeat the second one. The normal of the
+    /// right-hand rule, or (Δy, -Δx) in a plane, points from the first side to the second.
+    pub sides: [[u32; 3]; 2],
+    /// Elements on both sides: tetrahedra, or triangles where there are none.
+    pub elements: [u32; 2],
 }
 
 /// What one of several processes that share a mesh knows of the tetrahedra that others have. Nodes and all other elements are whole.

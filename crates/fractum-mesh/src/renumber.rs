@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::mesh::bounding_box;
-use crate::{Group, Mesh};
+use crate::{CutFace, Group, Mesh};
 
 /// Bits per axis of the grid on which points are ordered.
 const BITS: u32 = 20;
@@ -121,6 +121,11 @@ impl Renumbering {
             groups: mesh.groups.iter().map(group).collect(),
             notices: mesh.notices.clone(),
             whole: mesh.whole.clone(),
+            cuts: mesh
+                .cuts
+                .iter()
+                .map(|face| CutFace { sides: face.sides.map(|side| side.map(|n| new_node[n as usize])), ..*face })
+                .collect(),
         }
     }
 

@@ -55,6 +55,7 @@ pub(crate) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
         groups,
         notices,
         whole: None,
+        cuts: Vec::new(),
     };
     drop_unused_nodes(&mut mesh);
     Ok(mesh)
