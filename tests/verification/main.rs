@@ -5,6 +5,7 @@ mod crack_pressure;
 mod element;
 mod fracture_balance;
 mod gas;
+mod interfaces;
 mod laws;
 mod leaving;
 mod meeting;

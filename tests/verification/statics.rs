@@ -142,7 +142,7 @@ fn a_body_that_nothing_holds_is_named_with_its_motion() {
         let sets = axes.iter().map(|&a| Support::new(&format!("{a}"), bottom.clone(), a, Motion::Fixed)).collect();
         Supports::new(sets, &solid.reference).unwrap()
     };
-    let motion = |axes: &[usize]| match check_supports(&solid, held(axes).held(), &[]) {
+    let motion = |axes: &[usize]| match check_supports(&solid, held(axes).held(), &[], &[]) {
         Err(SceneError::FreeBody { body, motion, .. }) => format!("{body}: {motion}"),
         other => format!("{other:?}"),
     };

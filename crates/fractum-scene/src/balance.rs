@@ -4,9 +4,10 @@ use fractum_math::{HalfSteps, Vec3, Work};
 
 use crate::clock::ThisStep;
 use crate::error::StepError;
-use crate::ledger::EnergyKind;
+use crate::interfaces::Interfaces;
+use crate::ledger::{Books, EnergyKind, Ledger};
 use crate::ranks::gather_all;
-use crate::scene::Scene;
+use crate::scene::{Optional, Scene};
 use crate::watch::{Notice, Site};
 
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
@@ -20,7 +21,7 @@ const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
 /// The ledger of a state of equilibrium.
 pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
-    let Scene { ledger, solid, books, .. } = scene;
+    let Scene { ledger, solid, books, optional: Optional { interfaces, .. }, .. } = scene;
     ledger[EnergyKind::Elastic] = solid.elastic_energy();
     ledger[EnergyKind::Damage] = solid.dissipated_energy();
     ledger[EnergyKind::External] = books.external;
@@ -28,12 +29,20 @@ pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Friction] = books.friction;
     ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
     ledger[EnergyKind::TimeStep] = books.time_step;
+    book_interfaces(ledger, books, interfaces);
     ledger.update_maxima();
     if ledger.residual().is_finite() {
         return Ok(());
     }
     let (step, time, dt, limit) = (scene.clock.step, scene.clock.time, scene.clock.dt_before, f64::INFINITY);
     Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(scene) })
+}
+
+/// Energy in interfaces, and what they have taken beyond it.
+fn book_interfaces(ledger: &mut Ledger, books: &Books, interfaces: &Interfaces) {
+    let stored = interfaces.stored();
+    ledger[EnergyKind::Interfaces] = stored;
+    ledger[EnergyKind::InterfaceFracture] = books.interfaces - stored;
 }
 
 /// Completes the ledger of tⁿ and holds it against the guard.
@@ -54,6 +63,7 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::TimeStep] = books.time_step;
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
     ledger[EnergyKind::Left] = books.left;
+    book_interfaces(ledger, books, &optional.interfaces);
     ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
     if scene.clock.step == 0 {
         ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];

@@ -72,17 +72,7 @@ pub(crate) fn joined(
     solids.append(&mut bonded);
     let pairs = links.map(|(particle, node)| [of_node[node as usize], shift + of_particle[particle as usize]]);
     let part = connected(solids.len(), pairs);
-    let mut whole: Vec<Option<Fragment>> = solids.into_iter().map(Some).collect();
-    for index in (0..whole.len()).rev() {
-        let first = part[index] as usize;
-        if first != index
-            && let Some(part) = whole[index].take()
-            && let Some(first) = &mut whole[first]
-        {
-            first.take(part);
-        }
-    }
-    whole.into_iter().flatten().collect()
+    by_part(solids, &part)
 }
 
 /// Pieces of solids connected by edges that have lost less than `joined_below` of their strength, heaviest first; bodies
@@ -124,6 +114,35 @@ pub fn solid_pieces(solid: &Solid, joined_below: f64) -> Vec<Fragment> {
         .collect();
     pieces.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.nodes[0].cmp(&b.nodes[0])));
     pieces
+}
+
+/// Pieces of solids, those that links between nodes hold together as one, heaviest first.
+pub(crate) fn linked(pieces: Vec<Fragment>, links: impl Iterator<Item = [u32; 2]>) -> Vec<Fragment> {
+    let size = pieces.iter().flat_map(|piece| &piece.nodes).max().map_or(0, |node| *node as usize + 1);
+    let mut owner = vec![0u32; size];
+    for (index, piece) in (0..).zip(&pieces) {
+        piece.nodes.iter().for_each(|&node| owner[node as usize] = index);
+    }
+    let part = connected(pieces.len(), links.map(|pair| pair.map(|node| owner[node as usize])));
+    let mut whole = by_part(pieces, &part);
+    whole.iter_mut().for_each(|piece| piece.nodes.sort_unstable());
+    whole.sort_by(|a, b| b.mass.total_cmp(&a.mass).then(a.nodes[0].cmp(&b.nodes[0])));
+    whole
+}
+
+/// One piece of all with the same first one.
+fn by_part(pieces: Vec<Fragment>, part: &[u32]) -> Vec<Fragment> {
+    let mut whole: Vec<Option<Fragment>> = pieces.into_iter().map(Some).collect();
+    for index in (0..whole.len()).rev() {
+        let first = part[index] as usize;
+        if first != index
+            && let Some(part) = whole[index].take()
+            && let Some(first) = &mut whole[first]
+        {
+            first.take(part);
+        }
+    }
+    whole.into_iter().flatten().collect()
 }
 
 /// [`solid_pieces`], of which those are marked that boundaries hold.
@@ -168,9 +187,10 @@ pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
     (0..solid.body_count()).map(of_body).collect()
 }
 
-/// The smallest node that live elements connect each node to.
-pub(crate) fn parts(solid: &Solid) -> Vec<u32> {
-    connected(solid.reference.len(), (0..solid.body_count()).flat_map(|body| element_links(solid, body)))
+/// The smallest node that live elements, and links between nodes, connect each node to.
+pub(crate) fn parts(solid: &Solid, links: &[[u32; 2]]) -> Vec<u32> {
+    let elements = (0..solid.body_count()).flat_map(|body| element_links(solid, body));
+    connected(solid.reference.len(), elements.chain(links.iter().copied()))
 }
 
 /// The smallest node that edges with some strength left connect each node to.

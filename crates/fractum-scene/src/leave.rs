@@ -89,7 +89,7 @@ pub(crate) fn remove_departed_fragments(scene: &mut Scene, dt: f64) {
     if !outside.iter().zip(&gone).any(|(outside, gone)| *outside && !gone) {
         return;
     }
-    let piece = parts(solid);
+    let piece = parts(solid, &[]);
     let mut stays = vec![false; gone.len()];
     outside.iter().zip(&piece).filter(|(outside, _)| !**outside).for_each(|(_, &p)| stays[p as usize] = true);
     each_bound_node(scene, |node| stays[piece[node as usize] as usize] = true);

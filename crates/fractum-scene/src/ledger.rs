@@ -37,6 +37,10 @@ pub enum EnergyKind {
     Absorbed,
     /// Energy stored in the springs of elastic supports.
     Foundation,
+    /// Energy stored in interfaces between elements.
+    Interfaces,
+    /// Energy dissipated by the softening of interfaces.
+    InterfaceFracture,
     /// What central differences keep less of the energy at a start out of balance and at changes of the time step,
     /// ⅛ (Δt₊² - Δt₋²) Σ F²/m: either sign; and what small strains have found beyond the energy of a body as it begins to turn.
     TimeStep,
@@ -107,6 +111,8 @@ impl EnergyKind {
         entry(EnergyKind::Friction, "friction", "Friction", EnergyRole::Spent),
         entry(EnergyKind::Absorbed, "absorbed", "Absorbed by boundaries", EnergyRole::Spent),
         entry(EnergyKind::Foundation, "foundation", "Elastic supports", EnergyRole::Stored),
+        entry(EnergyKind::Interfaces, "interfaces", "Interfaces", EnergyRole::Stored),
+        entry(EnergyKind::InterfaceFracture, "interface_fracture", "Fracture of interfaces", EnergyRole::Spent),
         entry(
             EnergyKind::TimeStep,
             "time_step",
@@ -195,6 +201,8 @@ pub(crate) struct Books {
     pub(crate) absorbed: f64,
     pub(crate) time_step: f64,
     pub(crate) left: f64,
+    /// Work that interfaces have taken, but for friction and the meeting of their sides.
+    pub(crate) interfaces: f64,
     /// Part of `damping` that damping of nodes and particles has taken in the second half of the run.
     pub(crate) late_damping: f64,
     /// Part of `damping` that rigid shapes have taken from the nodes of solids that met them.

@@ -21,6 +21,7 @@ mod facet;
 mod fragment;
 mod gas;
 mod heat;
+mod interfaces;
 mod leave;
 mod ledger;
 mod measure;
@@ -49,11 +50,13 @@ pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_re
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;
+pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, SymmetryPlanes};
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
+pub use interfaces::{FaceReading, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use measure::counts::{CountKind, Counts};
 pub use measure::crack_extent::CrackProbe;

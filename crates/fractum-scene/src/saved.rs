@@ -9,6 +9,7 @@ use crate::conditions::ConditionsState;
 use crate::contacts::{Candidate, ContactsState, NodesOnShape};
 use crate::coupling::DebrisState;
 use crate::domain::Left;
+use crate::interfaces::InterfacesState;
 use crate::ledger::{Books, Ledger};
 use crate::scene::{RemovalTally, Scene};
 use crate::stable_step::update_wall_frequency;
@@ -32,6 +33,7 @@ pub struct SceneState {
     contact_frequency_peak: f64,
     left: Left,
     conditions: ConditionsState,
+    interfaces: Option<InterfacesState>,
 }
 
 impl SceneState {
@@ -55,7 +57,8 @@ impl SceneState {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
         let frequencies = (self.frequency, self.governing, self.removals);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
-        (touching, (&self.ledger, &self.books), frequencies, of_contacts, (&self.left, &self.conditions))
+        let rest = (&self.left, &self.conditions, &self.interfaces);
+        (touching, (&self.ledger, &self.books), frequencies, of_contacts, rest)
     }
 
     /// The same with another state of the solids; none where there is none.
@@ -89,6 +92,9 @@ impl Scene {
         for (ground, candidates) in self.shape_contacts.iter_mut().zip(state.shape_contacts) {
             ground.restore(candidates);
         }
+        if let Some(interfaces) = state.interfaces {
+            self.optional.interfaces.restore(&self.solid, interfaces);
+        }
         self.ledger = state.ledger;
         self.books = state.books;
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
@@ -118,5 +124,6 @@ pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {
         contact_frequency_peak: scene.frequencies.contact_peak,
         left: scene.removals.left.clone(),
         conditions: ConditionsState::of(&scene.loads, &scene.optional.surface_supports),
+        interfaces: (!scene.interfaces().is_empty()).then(|| scene.interfaces().state()),
     }
 }

@@ -8,9 +8,10 @@ use crate::conditions::{Loads, Population, Supports, SurfaceSupports};
 use crate::contacts::{Contacts, NodesOnShape};
 use crate::coupling::{Debris, Ties};
 use crate::domain::{Domain, Left};
-use crate::fragment::{Fragment, joined, marked_pieces, single_share, solid_pieces};
+use crate::fragment::{Fragment, joined, linked, marked_pieces, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
+use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
 use crate::modes::Modes;
 use crate::watch::Watch;
@@ -49,6 +50,8 @@ pub(crate) struct Optional {
     pub(crate) surface_supports: SurfaceSupports,
     /// Heat in solids and bonded bodies.
     pub(crate) heat: Option<Box<Heat>>,
+    /// Faces along which the nodes of solids are doubled.
+    pub(crate) interfaces: Interfaces,
     /// Natural vibrations, once they have been looked for.
     pub(crate) modes: Option<Box<Modes>>,
     /// What was noticed beyond the models of the scene.
@@ -120,6 +123,11 @@ impl Scene {
         reactions
     }
 
+    /// Interfaces between elements.
+    pub fn interfaces(&self) -> &Interfaces {
+        &self.optional.interfaces
+    }
+
     /// Gas in holes and cracks.
     pub fn gas(&self) -> Option<&Gas> {
         self.loads.gas()
@@ -148,7 +156,11 @@ impl Scene {
     /// Fragments of solids and bonded bodies, heaviest first: pieces of at least two nodes or particles, joined by edges
     /// that keep some of their strength, by bonds and by ties.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut found = marked_pieces(&self.solid, self.settings.joined_below, &self.optional.surface_supports);
+        let below = self.settings.joined_below;
+        let mut found = marked_pieces(&self.solid, below, &self.optional.surface_supports);
+        if !self.interfaces().is_empty() {
+            found = linked(found, self.interfaces().links(below));
+        }
         if !self.bonded.is_empty() {
             found = joined(found, self.bonded.fragments(), self.ties.links());
             found.sort_by(|a, b| b.mass.total_cmp(&a.mass));
@@ -161,7 +173,10 @@ impl Scene {
     /// 0 for single nodes.
     pub fn fragment_of_nodes(&self) -> Vec<i32> {
         let mut fragment = vec![0; self.solid.reference.len()];
-        let pieces = solid_pieces(&self.solid, self.settings.joined_below);
+        let mut pieces = solid_pieces(&self.solid, self.settings.joined_below);
+        if !self.interfaces().is_empty() {
+            pieces = linked(pieces, self.interfaces().links(self.settings.joined_below));
+        }
         for (number, piece) in (1..).zip(pieces.iter().filter(|piece| piece.nodes.len() > 1)) {
             piece.nodes.iter().for_each(|&node| fragment[node as usize] = number);
         }

@@ -6,7 +6,8 @@ use crate::bonded::Bonded;
 use crate::clock::{Clock, Frequencies};
 use crate::conditions::{Loads, Supports, SurfaceSupports};
 use crate::contacts::{Contacts, NodesOnShape, OverlapWith};
-use crate::coupling::{Attachment, Debris, Ties};
+use crate::coupling::{Apart, Attachment, Debris, Ties};
+use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
 use crate::scene::{Optional, Removals, Scene, SceneSettings};
 use crate::stable_step::{find_first_step, next_dt, prepare_shapes, update_wall_frequency};
@@ -72,7 +73,8 @@ impl Scene {
     ///
     /// - `surface`: nodes on the surface of the solids, ascending
     pub fn with_contacts(mut self, mut contacts: Contacts, surface: &[u32]) -> Self {
-        contacts.set_node_contacts(&self.solid, &mut self.debris, &self.bonded.particles, surface);
+        let joined = self.interfaces().joined_bodies();
+        contacts.set_node_contacts(&self.solid, &mut self.debris, &self.bonded.particles, surface, &joined);
         self.contacts = contacts;
         prepare_shapes(&mut self);
         self
@@ -81,6 +83,14 @@ impl Scene {
     /// The same scene with supports on facets of its solids, before its first step.
     pub fn with_surface_supports(mut self, supports: SurfaceSupports) -> Self {
         self.optional.surface_supports = supports;
+        self.clock = Clock::new(next_dt(&self, 0.0));
+        self
+    }
+
+    /// The same scene with interfaces between its elements, before its first step.
+    pub fn with_interfaces(mut self, interfaces: Interfaces) -> Self {
+        self.debris.apart = Apart::new(interfaces.doubled());
+        self.optional.interfaces = interfaces;
         self.clock = Clock::new(next_dt(&self, 0.0));
         self
     }

@@ -61,6 +61,7 @@ pub(crate) fn stable_dt_at(scene: &Scene, solids: f64, contacts: f64) -> f64 {
     let frequency = solids.max(scene.bonded.frequency() * divisor).max(scene.ties.frequency());
     let Frequencies { walls_square, contact_square, .. } = scene.frequencies;
     let contacts = contacts + scene.optional.surface_supports.frequency_square();
+    let contacts = contacts + scene.optional.interfaces.frequency_square();
     // Local damping opposes the motion with up to `local` times the unbalanced force: on the way back it stiffens.
     let frequency = ((frequency * frequency + contacts) * (1.0 + scene.settings.damping.local)).sqrt();
     let contact = if walls_square + contact_square > 0.0 { scene.debris.damping_ratio() } else { 0.0 };

@@ -7,6 +7,7 @@ use crate::clock::{Phase, ThisStep};
 use crate::conduct::{conduct, finish_expansion, heat_loses_elements};
 use crate::contacts::{HoldStep, Touching, hold_nodes};
 use crate::error::StepError;
+use crate::interfaces::motion::InterfaceStep;
 use crate::leave::{hold_departed_particles, remove_departed_fragments, remove_departed_particles};
 use crate::ranks::{follow_near, follow_removal, gather_watched, search_together};
 use crate::scene::Scene;
@@ -57,6 +58,7 @@ impl Scene {
         apply_tie_forces(self, &mut passed);
         let load = add_load_forces(self, &step, &mut passed) + bonded_load;
         add_surface_support_forces(self, step.is_first);
+        contact += add_interface_forces(self, step.elapsed);
         contact += hold_solid_nodes(self, step.elapsed, step.measure);
         let given = if step.is_first { start_half_a_step_early(self, step.dt_before) } else { 0.0 };
         hold_departed_particles(self);
@@ -101,6 +103,7 @@ pub(crate) fn release_cut_elements(scene: &mut Scene, dt: f64) -> StepReport {
     if report.removed > 0 {
         follow_removal(scene);
         scene.books.removed += energy;
+        lose_interfaces(scene);
         heat_loses_elements(scene);
         scene.loads.extend_cracks(&scene.solid, &scene.removals.last);
         let before = scene.debris.len();
@@ -133,6 +136,26 @@ pub(crate) fn release_cut_elements(scene: &mut Scene, dt: f64) -> StepReport {
         }
     }
     report
+}
+
+/// Forces of interfaces between elements; what friction and the meeting of their sides took.
+fn add_interface_forces(scene: &mut Scene, elapsed: f64) -> Work {
+    if scene.interfaces().is_empty() {
+        return Work::default();
+    }
+    let Scene { optional, solid, supports, clock, books, .. } = scene;
+    let step = InterfaceStep { elapsed, dt_after: clock.dt_after, held: supports.held() };
+    let (work, taken) = optional.interfaces.add_forces(solid, &step);
+    books.interfaces += taken;
+    work
+}
+
+/// Faces of interfaces beside elements that have left are no more; what was stored in them went too.
+fn lose_interfaces(scene: &mut Scene) {
+    let Scene { optional, solid, removals, books, .. } = scene;
+    let lost = optional.interfaces.lose(solid, &removals.last);
+    books.removed += lost;
+    books.interfaces -= lost;
 }
 
 /// Instants and sizes of the step that begins.

@@ -5,6 +5,7 @@ mod cost;
 mod estimate;
 mod gauges;
 mod heat;
+mod interfaces;
 mod rows;
 mod strength;
 mod time_step;
@@ -97,6 +98,7 @@ impl Plan {
         plan.describe_bodies(case, scene, bonded);
         plan.describe_scatter(case, &built.weibull);
         plan.describe_ties(&built.ties);
+        plan.describe_inner_faces(scene);
         if !case.source.stage.is_empty() {
             plan.add("stage", &case.source.stage);
         }
@@ -311,6 +313,7 @@ impl Plan {
             (dissipation, "damping of the highest frequencies of particles"),
             (turning, "large rotations"),
             (!scene.ties.is_empty(), "ties of particles to facets"),
+            (!scene.interfaces().is_empty(), "interfaces between elements"),
         ];
         let off = [
             (!damage, "damage"),

@@ -1,5 +1,7 @@
 //! Doubts about how bodies are held, how they meet, and how finely they are meshed.
 
+use std::collections::HashMap;
+
 use fractum_math::{Vec3, connected};
 use fractum_mesh::{Group, Mesh, topology};
 use fractum_output::number::quantity;
@@ -25,10 +27,15 @@ pub(super) struct Own<'a> {
     pub(super) plane: bool,
 }
 
-/// Bodies that hang together by common nodes, as the number of each one's first.
-pub(super) fn pieces(bodies: &[Own]) -> Vec<u32> {
-    let mut owners: Vec<(u32, u32)> =
-        (0..).zip(bodies).flat_map(|(body, own)| own.nodes.iter().map(move |&node| (node, body))).collect();
+/// Bodies that hang together by common nodes or by interfaces, as the number of each one's first.
+pub(super) fn pieces(mesh: &Mesh, bodies: &[Own]) -> Vec<u32> {
+    // The nodes of both sides of an interface count as one.
+    let sides = mesh.cuts.iter().flat_map(|face| (0..3).map(|corner| face.sides.map(|side| side[corner])));
+    let same: HashMap<u32, u32> = sides.map(|[first, second]| (second, first)).collect();
+    let one = |node: u32| same.get(&node).copied().unwrap_or(node);
+    let of_body = |(body, own): (u32, &Own)| own.nodes.iter().map(move |&node| (node, body)).collect::<Vec<_>>();
+    let mut owners: Vec<(u32, u32)> = (0..).zip(bodies).flat_map(of_body).collect();
+    owners.extend(owners.clone().into_iter().map(|(node, body)| (one(node), body)));
     owners.sort_unstable();
     let shared = owners.windows(2).filter(|pair| pair[0].0 == pair[1].0);
     connected(bodies.len(), shared.map(|pair| [pair[0].1, pair[1].1]))
@@ -62,7 +69,12 @@ fn driven<'a>(mesh: &Mesh, on: &'a Selection) -> Option<Driven<'a>> {
 pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
     let moves = case.solver.kind == SolverKind::Explicit && case.later.is_empty() && case.in_situ.is_none();
-    if bodies.is_empty() || !alone || !moves || mesh.whole.is_some() || pieces(bodies).iter().any(|piece| *piece != 0) {
+    if bodies.is_empty()
+        || !alone
+        || !moves
+        || mesh.whole.is_some()
+        || pieces(mesh, bodies).iter().any(|piece| *piece != 0)
+    {
         return None;
     }
     let thrown = bodies.iter().any(|body| body.solid.initial_velocity.iter().any(Option::is_some));

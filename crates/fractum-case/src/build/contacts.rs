@@ -59,7 +59,7 @@ pub(super) fn with_contacts(
     warnings: &mut Vec<Diagnostic>,
 ) -> Option<Scene> {
     let materials = contact_materials(context);
-    let pieces = pieces(&scene.solid);
+    let pieces = pieces(&scene.solid, &scene.interfaces().joined_bodies());
     let solids_meet = pieces.iter().any(|piece| *piece != pieces[0]);
     if materials.is_empty() {
         if scene.solid.is_plane() {

@@ -1,6 +1,6 @@
 //! Doubts about how bodies meet: nodes in the same places, solids within each other, tools that touch nothing, damping without effect.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use fractum_math::Vec3;
 use fractum_mesh::{Coincident, Mesh, coincident_nodes};
@@ -18,7 +18,7 @@ const SAMPLE: usize = 2000;
 const LOOKS: u32 = 1000;
 
 /// Plane solids that could meet, and pass through each other.
-pub(super) fn meetings(case: &Case, bodies: &[Own]) -> Option<Diagnostic> {
+pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     if case.solver.kind != SolverKind::Explicit || !bodies.iter().any(|body| body.plane) {
         return None;
     }
@@ -26,7 +26,7 @@ pub(super) fn meetings(case: &Case, bodies: &[Own]) -> Option<Diagnostic> {
     if bodies.iter().any(|body| body.nodes.is_empty()) {
         return None;
     }
-    let pieces = pieces(bodies);
+    let pieces = pieces(mesh, bodies);
     let other = pieces.iter().position(|piece| *piece != 0)?;
     let [first, second] = [&bodies[0], &bodies[other]].map(|body| &body.name.value);
     let found = format!("= \"{second}\": it has no nodes in common with \"{first}\", and plane solids do not touch");
@@ -44,7 +44,11 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
     let says_how = |body: &Own| body.solid.surface(&case.materials) != ContactParameters::default();
     let sets: Vec<&[u32]> = bodies.iter().map(|body| body.nodes.as_slice()).collect();
     let mut pairs = BTreeMap::<[usize; 2], (usize, u32)>::new();
-    for Coincident { bodies, nodes: [node, _] } in coincident_nodes(mesh, &sets) {
+    let cut: HashSet<u32> = mesh.cuts.iter().flat_map(|face| face.sides.concat()).collect();
+    for Coincident { bodies, nodes: [node, twin] } in coincident_nodes(mesh, &sets) {
+        if cut.contains(&node) && cut.contains(&twin) {
+            continue;
+        }
         pairs.entry(bodies).or_insert((0, node)).0 += 1;
     }
     let doubt = |(pair, (count, node)): ([usize; 2], (usize, u32))| {
@@ -199,7 +203,7 @@ pub(super) fn missing(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnosti
 }
 
 /// Damping of contact that counts nowhere: driven shapes hold the nodes of solids, and there is nothing else to touch.
-pub(super) fn undamped(case: &Case, bodies: &[Own]) -> Vec<Diagnostic> {
+pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
     let moves = std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Explicit);
     let held = |body: &Body| match &body.kind {
         // What is thrown meets springs.
@@ -213,7 +217,7 @@ pub(super) fn undamped(case: &Case, bodies: &[Own]) -> Vec<Diagnostic> {
     let is_driven = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Rigid(_)));
     // Meshes that a command makes may not be there yet.
     let there = bodies.iter().all(|body| !body.nodes.is_empty());
-    let alone = bodies.iter().all(|body| body.plane) || (there && pieces(bodies).iter().all(|piece| *piece == 0));
+    let alone = bodies.iter().all(|body| body.plane) || (there && pieces(mesh, bodies).iter().all(|piece| *piece == 0));
     if !moves || !is_driven || !alone || case.solver.subcycling.is_some() || !case.bodies.iter().all(held) {
         return Vec::new();
     }

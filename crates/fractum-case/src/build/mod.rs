@@ -12,6 +12,7 @@ mod gas;
 mod gauges;
 mod heat;
 mod in_situ;
+mod interfaces;
 mod load_doubts;
 mod meeting_doubts;
 mod model_doubts;
@@ -28,6 +29,7 @@ mod tool_overlaps;
 pub use contacts::PreparedFacets;
 pub use division::{Replication, SolidDivision, cannot_divide, divide, replicated_bodies, replication};
 pub use doubts::doubts;
+pub use interfaces::{cut_mesh, process_zone};
 pub use ppv::PpvStations;
 pub use statics::may_rest;
 pub use strength::WeibullReport;
@@ -181,12 +183,15 @@ impl<'a> Context<'a> {
         ties::take_out(self, &mut parts, &taken);
         self.without_mistakes()?;
         let numbering = bodies::number_nodes(self, &parts);
-        let boundary = bodies::boundary(self, &parts, &numbering);
+        let mut boundary = bodies::boundary(self, &parts, &numbering);
+        let inner = interfaces::inner_facets(self, &numbering);
+        boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
         let mut solid = self.solid(&parts, &numbering, &boundary)?;
         let mut warnings = bodies::length_warnings(&solid, &parts);
         warnings.extend(bodies::weibull_warnings(self, &solid, &parts));
         bodies::set_initial_velocity(self, &mut solid, &parts, &numbering);
         let mut boundary_of_parts = contacts::facets_of_parts(self, &parts, &numbering);
+        boundary_of_parts.iter_mut().for_each(|own| own.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet))));
         if neighbours::is_divided(&solid) {
             boundary_of_parts
                 .iter()
@@ -218,6 +223,8 @@ impl<'a> Context<'a> {
             .with_bonded(bonded)
             .with_ties(&ties.attachments)
             .with_surface_supports(surface_supports);
+        let scene = interfaces::with_interfaces(self, scene, &parts, &numbering);
+        warnings.extend(interfaces::doubts(self, &scene));
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene = contacts::with_contacts(
             self,

@@ -43,11 +43,11 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
         meets = coincident(case, mesh, &bodies);
     }
     if meets.is_empty() {
-        doubts.extend(meetings(case, &bodies));
+        doubts.extend(meetings(case, mesh, &bodies));
     }
     doubts.extend(meets);
     doubts.extend(missing(case, mesh, &bodies));
-    doubts.extend(undamped(case, &bodies));
+    doubts.extend(undamped(case, mesh, &bodies));
     doubts.extend(unheld(case, mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));

@@ -7,7 +7,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Domain, Scene};
 
-use super::Context;
+use super::{Context, interfaces};
 use crate::measure::ContactForce;
 use crate::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
@@ -25,6 +25,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_contact_probes(context);
     check_heat_probes(context);
     context.check_subcycling();
+    interfaces::check(context);
 }
 
 /// Probes of heat need heat.

@@ -6,6 +6,7 @@ mod bodies;
 mod conditions;
 mod gas;
 mod heat;
+mod interfaces;
 mod output;
 mod probes;
 mod solver;
@@ -32,7 +33,7 @@ pub fn keys() -> &'static [KeyDoc] {
         let field = |field: &OutputField| key(field.path(), KeyKind::Flag, "false", field.doc());
         let fields: Vec<KeyDoc> = OutputField::ALL.iter().map(field).collect();
         let output = [output::FIRST, &fields, output::LAST].concat();
-        let before = [bodies::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS, solver::KEYS].concat();
+        let before = [bodies::KEYS, interfaces::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS, solver::KEYS].concat();
         [before, probes, output].concat()
     });
     &KEYS

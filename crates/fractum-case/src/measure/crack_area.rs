@@ -1,4 +1,4 @@
-//! Area of the cracks, Σ V d/l over the damaged edges [m²].
+//! Area of the cracks, Σ V d/l over the damaged edges, and that of broken interfaces [m²].
 
 use fractum_fem::CrackEdge;
 use fractum_scene::{Probe, ProbeNeeds, ProbedScene, Scene};
@@ -32,7 +32,8 @@ impl Measure for CrackArea {
 
 impl Probe for CrackArea {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        probed.crack_edges().iter().map(CrackEdge::damaged_area).sum()
+        let broken: f64 = probed.scene.interfaces().broken().map(|(_, part, area)| part * area).sum();
+        probed.crack_edges().iter().map(CrackEdge::damaged_area).sum::<f64>() + broken
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

@@ -6,6 +6,7 @@ mod boundary;
 mod gas;
 mod gauges;
 mod heat;
+mod interface;
 mod loose;
 mod material;
 mod output;
@@ -31,6 +32,7 @@ pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Support
 pub use gas::{Gas, GasHole, GasLaw};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
+pub use interface::{Interface, InterfaceFaces};
 pub use loose::{LooseBody, LooseSource};
 pub use material::{Damage, Material};
 pub use output::Output;
@@ -63,6 +65,8 @@ pub struct Case {
     pub bodies: Vec<Body>,
     /// Ties between bonded bodies and solids, in the order of the file.
     pub ties: Vec<Tie>,
+    /// Interfaces between elements, in the order of the file.
+    pub interfaces: Vec<Interface>,
     /// Supports, in the order of the file.
     pub supports: Vec<Support>,
     /// Loads, in the order of the file.

@@ -11,6 +11,7 @@ mod gauges;
 mod heat;
 mod in_situ;
 mod interface;
+mod interfaces;
 mod loose;
 mod materials;
 mod names;
@@ -185,6 +186,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let materials = materials::read(&table);
     let bodies = bodies::read(&table, &materials);
     let ties = ties::read(&table, bodies.as_deref());
+    let interfaces = interfaces::read(&table);
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
@@ -217,6 +219,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
         bodies: bodies?,
         ties: ties?,
+        interfaces: interfaces?,
         supports: supports?,
         loads: loads?,
         in_situ: in_situ?,

@@ -11,6 +11,7 @@ use crate::fields::{OutputField, OutputFields};
 use crate::frames::cracks;
 use crate::frames::frame_file::FrameFile;
 use crate::frames::gas_cells;
+use crate::frames::interfaces;
 use crate::frames::particles::{ParticleFiles, tensor};
 use crate::frames::population::Population;
 use crate::frames::rigid_surface::RigidSurfaces;
@@ -79,6 +80,9 @@ impl Frame {
         }
         if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
             whole.push((Population::Gas, gas_cells::file(scene, gas)?));
+        }
+        if !scene.interfaces().is_empty() {
+            whole.push((Population::Interfaces, interfaces::file(scene)?));
         }
         let crack = CrackSurface::of(&scene.solid);
         if !crack.facets.is_empty() {

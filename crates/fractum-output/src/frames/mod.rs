@@ -4,6 +4,7 @@ pub mod cracks;
 mod frame;
 mod frame_file;
 mod gas_cells;
+mod interfaces;
 mod particles;
 mod path_frames;
 mod population;

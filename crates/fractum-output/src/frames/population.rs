@@ -21,11 +21,13 @@ pub enum Population {
     Gas,
     /// Surfaces of rigid bodies.
     Rigid,
+    /// Interfaces between elements.
+    Interfaces,
 }
 
 impl Population {
     /// All of them.
-    pub const ALL: [Population; 8] = [
+    pub const ALL: [Population; 9] = [
         Population::Solid,
         Population::Debris,
         Population::Bonded,
@@ -34,6 +36,7 @@ impl Population {
         Population::Cracks,
         Population::Gas,
         Population::Rigid,
+        Population::Interfaces,
     ];
 
     /// Its number in the collection.
@@ -77,12 +80,13 @@ impl Population {
             Population::Cracks => (4, "cracks", ["cracks", "cracks", "vtp"]),
             Population::Gas => (5, "gas", ["gas", "gas", "vtu"]),
             Population::Rigid => (7, "rigid bodies", ["rigid", "rigid", "vtp"]),
+            Population::Interfaces => (8, "interfaces", ["interfaces", "interfaces", "vtp"]),
         }
     }
 
     /// Whether pictures show it.
     pub fn is_drawn(self) -> bool {
-        !matches!(self, Population::Bonds | Population::Cracks | Population::Gas)
+        !matches!(self, Population::Bonds | Population::Cracks | Population::Gas | Population::Interfaces)
     }
 
     /// Whether it is what the case is about: pictures frame it, and magnify how far it has moved.

@@ -73,12 +73,14 @@ impl Contacts {
     /// Has the nodes of solids meet what there is; plane ones meet nothing of it.
     ///
     /// - `surface`: nodes on the surfaces of the solids, ascending
+    /// - `joined`: bodies that interfaces join
     pub(crate) fn set_node_contacts(
         &mut self,
         solid: &Solid,
         debris: &mut Debris,
         particles: &Particles,
         surface: &[u32],
+        joined: &[[u32; 2]],
     ) {
         if solid.body_count() == 0 || solid.is_plane() {
             return;
@@ -87,7 +89,7 @@ impl Contacts {
             let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
             self.nodes.debris = Some(DebrisAmong::new(SKIN * smallest));
         }
-        let piece = pieces(solid);
+        let piece = pieces(solid, joined);
         let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };
         let meets = self.solids.iter().any(|ground| apart(ground.body()).contains(&true));
         if meets || self.rigid_bodies.iter().any(has_walls) {
@@ -256,9 +258,11 @@ fn has_walls(rigid_body: &RigidBody) -> bool {
 
 /// The piece that each solid body belongs to, by the first body of it: bodies that share nodes are one piece, whose bodies do
 /// not touch each other.
-pub fn pieces(solid: &Solid) -> Vec<u32> {
+///
+/// - `joined`: bodies that interfaces join, which touch there alone
+pub fn pieces(solid: &Solid, joined: &[[u32; 2]]) -> Vec<u32> {
     let mut owner = vec![u32::MAX; solid.reference.len()];
-    let mut links = Vec::new();
+    let mut links = joined.to_vec();
     for body in 0..solid.body_count() {
         for node in neighbours::nodes_of(solid, body) {
             let first = &mut owner[node as usize];

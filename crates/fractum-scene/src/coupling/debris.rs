@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::holder::{Holder, Holders};
 use super::radius::largest_radii;
+pub(crate) use near::Apart;
 use near::Near;
 
 /// No particle at this node.
@@ -49,6 +50,8 @@ pub struct Debris {
     /// Where each particle is in that list, or [`NONE`].
     place_in_turned: Vec<u32>,
     near: Near,
+    /// Pairs of nodes that never touch.
+    pub(crate) apart: Apart,
     /// Stiffness over mass of the contacts of each particle [1/s²]; zero but while it is summed.
     rates: Vec<f64>,
 }
@@ -119,6 +122,7 @@ impl Debris {
             turned: Vec::new(),
             place_in_turned: Vec::new(),
             near: Near::default(),
+            apart: Apart::default(),
             rates: Vec::new(),
         }
     }

@@ -6,7 +6,7 @@ mod layer;
 mod radius;
 mod tie;
 
-pub(crate) use debris::Push;
+pub(crate) use debris::{Apart, Push};
 pub use debris::{Debris, DebrisState, Pair};
 pub use layer::{Attachment, Layer};
 pub use radius::largest_radii;

@@ -4,6 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_fem::{SeparatedElement, Separation, cracks};
 use fractum_math::{Vec3, numbered_parts};
 
+use crate::interfaces::InterfaceFace;
 use crate::measure::crack_measure::{CrackMeasure, InsideCracks, measure_crack};
 use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
@@ -71,8 +72,18 @@ fn measure_extent(
     let broken = broken.filter(|(body, crack)| inside.is_none_or(|inside| inside.has_bond(*body, crack.bond)));
     let broken = broken.map(|(_, crack)| crack);
     let solid = &scene.solid;
+    // Of the two sides of an interface one counts.
+    let counts = |face: &InterfaceFace| {
+        let (body, element) = face.elements[0];
+        inside.is_none_or(|inside| inside.has_element(body as usize, element))
+    };
+    let parted = scene.interfaces().broken().filter(|(face, ..)| counts(face));
     match measure {
-        CrackMeasure::Length => facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + 0.0,
+        CrackMeasure::Length => {
+            let parted =
+                parted.map(|(face, part, area)| part * area / solid.body(face.elements[0].0 as usize).thickness);
+            facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + parted.sum::<f64>() + 0.0
+        }
         CrackMeasure::Count => {
             let (_, of_solids) = cracks::separate_cracks(solid, &separated_within(separation, inside));
             let pairs: Vec<[u32; 2]> = broken.map(|crack| crack.pair).collect();
@@ -80,10 +91,18 @@ fn measure_extent(
         }
         CrackMeasure::Tip => {
             let elements = separated_within(separation, inside).into_iter().map(|of| of.middle);
+            let middle = |face: &InterfaceFace| {
+                let corners = &face.sides[0][..face.corners()];
+                corners.iter().map(|&node| solid.reference[node as usize]).sum::<Vec3>() / corners.len() as f64
+            };
             let places = elements.chain(broken.map(|crack| crack.position));
+            let places = places.chain(parted.map(|(face, ..)| middle(face)));
             places.map(|place| place.dot(direction)).fold(f64::NAN, f64::max)
         }
-        _ => facets.map(|facet| facet.area).sum::<f64>() + broken.map(|crack| crack.area).sum::<f64>(),
+        _ => {
+            let parted: f64 = parted.map(|(_, part, area)| part * area).sum();
+            facets.map(|facet| facet.area).sum::<f64>() + broken.map(|crack| crack.area).sum::<f64>() + parted
+        }
     }
 }
 

@@ -15,6 +15,7 @@ use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Drive, RigidBody};
 use crate::coupling::Push;
 use crate::error::SceneError;
+use crate::interfaces::rest::InterfaceSpring;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 use crate::statics::anderson::Anderson;
@@ -155,8 +156,10 @@ impl Scene {
     /// [`SceneError::FreeBody`] with the body and the motion.
     pub fn check_supports(&self) -> Result<(), SceneError> {
         let springs = springs_at_rest(self);
-        let touched: Vec<(u32, Vec3)> = springs.iter().map(|spring| (spring.node, spring.normal)).collect();
-        check_supports(&self.solid, self.supports.held(), &touched)
+        let shapes = springs.iter().filter(|spring| spring.partner.is_none());
+        let touched: Vec<(u32, Vec3)> = shapes.map(|spring| (spring.node, spring.normal)).collect();
+        let links: Vec<[u32; 2]> = springs.iter().filter_map(Spring::pair).collect();
+        check_supports(&self.solid, self.supports.held(), &touched, &links)
     }
 }
 
@@ -189,6 +192,10 @@ pub(super) fn contact_springs(
         Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
+    springs.extend(scene.interfaces().springs(field, slipping).map(|spring| {
+        let InterfaceSpring { pair: [partner, node], normal, force, stiffness } = spring;
+        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate: Vec3::zeros() }
+    }));
     if scene.shape_contacts.is_empty() {
         return springs;
     }
@@ -294,6 +301,9 @@ pub(super) fn accept_contacts(scene: &mut Scene, before: &[Vec3], present: f64, 
     if !has_contacts(scene) {
         return;
     }
+    let [friction, taken] = scene.optional.interfaces.accept_at_rest(&scene.solid);
+    scene.books.friction += friction;
+    scene.books.interfaces += taken;
     scene.books.external -= scene.debris.accept_at_rest(&scene.solid, before);
     if !scene.shape_contacts.is_empty() {
         accept_grounds(scene, before, present, time);
@@ -305,7 +315,7 @@ pub(super) fn accept_contacts(scene: &mut Scene, before: &[Vec3], present: f64, 
 
 /// Whether anything can touch at equilibrium.
 pub(super) fn has_contacts(scene: &Scene) -> bool {
-    !(scene.shape_contacts.is_empty() && scene.debris.is_empty())
+    !(scene.shape_contacts.is_empty() && scene.debris.is_empty() && scene.interfaces().is_empty())
 }
 
 fn accept_grounds(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {

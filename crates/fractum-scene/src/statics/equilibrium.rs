@@ -143,6 +143,7 @@ fn add_contact_forces_at_rest(scene: &mut Scene) {
         scene.solid.force[candidate.node as usize] += candidate.force;
     }
     scene.debris.add_forces_at_rest(&mut scene.solid);
+    scene.optional.interfaces.add_forces_at_rest(&mut scene.solid);
 }
 
 /// The forces of a state at rest that is no exact equilibrium.

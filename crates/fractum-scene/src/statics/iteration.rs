@@ -163,7 +163,8 @@ impl StaticSolver {
         let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
         self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, slipping, also);
         self.couple(scene)?;
-        if !(self.elastic && self.prepared && scene.shape_contacts.is_empty()) {
+        let is_linear = scene.shape_contacts.is_empty() && scene.interfaces().is_empty();
+        if !(self.elastic && self.prepared && is_linear) {
             let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
             prepared.map_err(|e| come_apart(scene, e))?;
             self.prepared = true;

@@ -14,11 +14,17 @@ const FREE: f64 = 1e-9;
 ///
 /// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
 /// - `touched`: nodes that cannot move against a direction
+/// - `links`: pairs of nodes of pieces that hold together
 ///
 /// # Errors
 /// [`SceneError::FreeBody`] with the body and the motion.
-pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Result<(), SceneError> {
-    for (body, nodes) in pieces(solid) {
+pub fn check_supports(
+    solid: &Solid,
+    held: &[u8],
+    touched: &[(u32, Vec3)],
+    links: &[[u32; 2]],
+) -> Result<(), SceneError> {
+    for (body, nodes) in pieces(solid, links) {
         let mut piece = Piece::new(solid, &nodes, held);
         let mut members = nodes.clone();
         members.sort_unstable();
@@ -45,7 +51,7 @@ pub fn check_supports(solid: &Solid, held: &[u8], touched: &[(u32, Vec3)]) -> Re
 /// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
 pub(super) fn pins(solid: &Solid, held: &[u8]) -> Vec<u8> {
     let mut pinned = if held.is_empty() { vec![0; solid.reference.len()] } else { held.to_vec() };
-    for (_, nodes) in pieces(solid) {
+    for (_, nodes) in pieces(solid, &[]) {
         let mut piece = Piece::new(solid, &nodes, held);
         while let Some(motion) = piece.free_motion() {
             let of = |&node: &u32| {
@@ -144,8 +150,8 @@ impl Piece {
 }
 
 /// Connected pieces: the body of their first element, and their nodes.
-pub(super) fn pieces(solid: &Solid) -> Vec<(usize, Vec<u32>)> {
-    let part = parts(solid);
+pub(super) fn pieces(solid: &Solid, links: &[[u32; 2]]) -> Vec<(usize, Vec<u32>)> {
+    let part = parts(solid, links);
     let mut body_of = vec![usize::MAX; part.len()];
     for body in 0..solid.body_count() {
         let model = solid.body(body);

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_case::build::{SolidDivision, cannot_divide, divide, replicated_bodies};
+use fractum_case::build::{SolidDivision, cannot_divide, cut_mesh, divide, replicated_bodies};
 use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_math::Vec3;
@@ -68,8 +68,13 @@ impl MeshFiles {
                 remedy,
             ));
         }
-        let ReadFiles { mesh, hashes, warnings } =
+        if is_part && let Some(interface) = case.interfaces.first() {
+            let note = Diagnostic::error(&interface.place, "in a run of several processes");
+            return Err(Failure::Input(Diagnostics(vec![note.expected("one process; threads are not limited")])));
+        }
+        let ReadFiles { mut mesh, hashes, warnings } =
             read_files(source, if is_part { processes } else { processes.alike() })?;
+        cut_mesh(case, &mut mesh).map_err(Failure::Input)?;
         Ok(MeshFiles { mesh, warnings, hashes, is_part, alike: reason, processes })
     }
 

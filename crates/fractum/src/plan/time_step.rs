@@ -4,7 +4,7 @@ use fractum_case::model::{Case, StopWhen};
 use fractum_output::number::{percent, quantity};
 use fractum_scene::Scene;
 
-use super::Plan;
+use super::{Plan, interfaces};
 
 impl Plan {
     /// The step, what asks for it, and how many there are.
@@ -18,10 +18,11 @@ impl Plan {
             None if scene.contacts_govern() => "the contacts of particles".to_owned(),
             None => "the bonds".to_owned(),
         };
+        let shorter = interfaces::shortened(scene).map_or_else(String::new, |shorter| format!("; {shorter}"));
         self.add(
             "time step",
             format!(
-                "{} ({} of the stable {}), governed by {governing}",
+                "{} ({} of the stable {}), governed by {governing}{shorter}",
                 quantity(scene.clock.dt_after, "s"),
                 case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
                 quantity(scene.stable_dt(), "s")

@@ -20,6 +20,23 @@ const CHUNK: usize = 2048;
 /// What squares of distances are compared with more than exactly, so that rounding misses no contact.
 const ROUNDING: f64 = 1e-12;
 
+/// Pairs of nodes that never touch as particles, since something else stands between them.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Apart(Vec<[u32; 2]>);
+
+impl Apart {
+    /// - `pairs`: the lower node first
+    pub(crate) fn new(pairs: impl Iterator<Item = [u32; 2]>) -> Self {
+        let mut pairs: Vec<[u32; 2]> = pairs.collect();
+        pairs.sort_unstable();
+        Apart(pairs)
+    }
+
+    fn has(&self, nodes: [u32; 2]) -> bool {
+        !self.0.is_empty() && self.0.binary_search(&nodes).is_ok()
+    }
+}
+
 /// Particles near each other, by the numbers of their nodes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Near {
@@ -116,7 +133,10 @@ impl Debris {
             for k in 0..near.around.len() {
                 let nodes = [node.min(near.around[k]), node.max(near.around[k])];
                 // Neighbours that an element still joins are held by it.
-                if near.rows.find(nodes).is_none() && !(self.both_held(nodes) && removal::is_live_edge(solid, nodes)) {
+                if near.rows.find(nodes).is_none()
+                    && !self.apart.has(nodes)
+                    && !(self.both_held(nodes) && removal::is_live_edge(solid, nodes))
+                {
                     let newborn = nodes.iter().any(|&n| self.particle_of[n as usize] as usize >= near.listed);
                     near.rows.add(nodes[0], self.new_entry(solid, nodes, false, newborn));
                 }

@@ -1,0 +1,187 @@
+//! Interfaces between elements: the mesh is cut along them before anything is built, and their faces go to the scene.
+
+use std::collections::HashSet;
+
+use fractum_fem::{ElementKind, Solid};
+use fractum_mesh::{CutAlong, Mesh};
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
+use fractum_scene::{InterfaceFace, InterfaceKind, Interfaces, Scene};
+
+use super::Context;
+use super::bodies::{Numbering, Part};
+use crate::model::{Case, InterfaceFaces, SolverKind};
+use crate::{Diagnostic, Diagnostics, Place, nearest};
+
+/// Elements in a process zone below which it is not resolved.
+const IN_ZONE: f64 = 3.0;
+
+/// Cuts a mesh along the interfaces of a case.
+///
+/// # Errors
+/// Groups that are not there, and faces that are not inside of the mesh.
+pub fn cut_mesh(case: &Case, mesh: &mut Mesh) -> Result<(), Diagnostics> {
+    if case.interfaces.is_empty() {
+        return Ok(());
+    }
+    let names = mesh.group_names();
+    let groups = case.interfaces.iter().flat_map(|interface| interface.along.groups());
+    let unknown = groups.filter(|group| !names.contains(&group.value.as_str())).map(|group| {
+        let note = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
+        let note = note.expected(format!("a physical group of the mesh; groups there: {}", names.join(", ")));
+        match nearest(&group.value, names.iter().copied()) {
+            Some(near) => note.remedy(format!("did you mean \"{near}\"?")),
+            None => note,
+        }
+    });
+    let unknown: Vec<Diagnostic> = unknown.collect();
+    if !unknown.is_empty() {
+        return Err(Diagnostics::of_many(unknown));
+    }
+    let between =
+        |along: &InterfaceFaces| -> Vec<String> { along.groups().iter().map(|group| group.value.clone()).collect() };
+    let lists: Vec<Vec<String>> = case.interfaces.iter().map(|interface| between(&interface.along)).collect();
+    let cuts = case.interfaces.iter().zip(&lists).map(|(interface, groups)| match &interface.along {
+        InterfaceFaces::Group(group) => CutAlong::Group(&group.value),
+        InterfaceFaces::Between(_) => CutAlong::Between(groups),
+    });
+    let cuts: Vec<CutAlong> = cuts.collect();
+    mesh.cut(&cuts).map_err(|(number, error)| {
+        let interface = &case.interfaces[number];
+        let place = match &interface.along {
+            InterfaceFaces::Group(group) => &group.place,
+            InterfaceFaces::Between(groups) => &groups.place,
+        };
+        let note = Diagnostic::error(place, format!(": {error}"));
+        let remedy = "embed the surface in its volume (Gmsh: BooleanFragments, or Line{...} In Surface{...}) and give it a physical group";
+        Diagnostics::of_many(vec![note.expected("faces with elements on both sides").remedy(remedy)])
+    })
+}
+
+/// Facets of interfaces, which are no surface of the solids, by their nodes in the scene.
+pub(super) fn inner_facets(context: &Context<'_>, numbering: &Numbering) -> HashSet<[u32; 3]> {
+    let scene = |n: u32| numbering.scene_node[n as usize];
+    let sides = context.mesh.cuts.iter().flat_map(|face| face.sides);
+    sides.map(|side| by_nodes(side.map(scene))).collect()
+}
+
+/// A facet by its nodes alone; an edge repeats the higher one.
+pub(super) fn by_nodes([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if b == c { [a.min(b), a.max(b), a.max(b)] } else { super::ties::sorted([a, b, c]) }
+}
+
+/// The scene with its interfaces.
+pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[Part], numbering: &Numbering) -> Scene {
+    if context.mesh.cuts.is_empty() {
+        return scene;
+    }
+    let case = context.case;
+    let kinds = case.interfaces.iter().map(|interface| InterfaceKind {
+        name: interface.name.clone(),
+        law: interface.law,
+        stiffness: interface.stiffness,
+    });
+    let kinds: Vec<InterfaceKind> = kinds.collect();
+    let owner = |element: u32| {
+        let own =
+            |(body, part): (usize, &Part)| Some((body as u32, part.elements.binary_search(&element).ok()? as u32));
+        parts.iter().enumerate().find_map(own)
+    };
+    let node = |n: u32| numbering.scene_node[n as usize];
+    let (mut faces, mut outside) = (Vec::new(), vec![0usize; kinds.len()]);
+    for face in &context.mesh.cuts {
+        let [first, second] = face.elements.map(owner);
+        match first.zip(second) {
+            Some((first, second)) => faces.push(InterfaceFace {
+                kind: face.cut,
+                sides: face.sides.map(|side| side.map(node)),
+                elements: [first, second],
+            }),
+            None => outside[face.cut as usize] += 1,
+        }
+    }
+    for (interface, count) in case.interfaces.iter().zip(outside).filter(|(_, count)| *count > 0) {
+        let found = format!(": {count} of its faces have an element beside them that belongs to no solid body");
+        context.error(&interface.place, found, "faces inside of solid bodies");
+    }
+    let interfaces = Interfaces::new(&scene.solid, kinds, faces);
+    scene.with_interfaces(interfaces)
+}
+
+/// What does not go together with interfaces yet.
+pub(super) fn check(context: &mut Context<'_>) {
+    let case = context.case;
+    let Some(first) = case.interfaces.first() else { return };
+    let place = first.place.clone();
+    let stiff = case.interfaces.iter().find(|interface| interface.stiffness.is_none());
+    match case.solver.kind {
+        SolverKind::Modes => context.error(&place, "with solver.kind = \"modes\"", "solids without interfaces"),
+        SolverKind::Heat => {
+            context.error(&place, "with solver.kind = \"heat\"", "solids without interfaces: heat alone moves nothing")
+        }
+        SolverKind::Static => {
+            if let Some(stiff) = stiff {
+                let note = Diagnostic::error(
+                    &stiff.place,
+                    "is stiff until its strength is met, with solver.kind = \"static\"",
+                );
+                let remedy =
+                    "give normal_stiffness, such as 10 to 100 times Young's modulus over the size of the elements";
+                context.diagnostics.push(note.expected("a stiffness").remedy(remedy));
+            }
+        }
+        _ => {}
+    }
+    if case.solver.subcycling.is_some() {
+        context.error(&place, "with solver.subcycling", "one step for all elements; remove subcycling");
+    }
+    if case.in_situ.is_some() {
+        context.error(&place, "with [in_situ]", "solids that begin without stress; load them in the run instead");
+    }
+    if case.flows.heat.is_some() {
+        context.error(&place, "with [heat]", "solids without heat: none flows across interfaces");
+    }
+    if context.exchange.is_some() || context.division.is_some() {
+        context.error(&place, "in a run of several processes", "one process; threads are not limited");
+    }
+}
+
+/// Doubts about the size of elements beside interfaces.
+pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
+    let interfaces = scene.interfaces();
+    let mut doubts = Vec::new();
+    for (kind, interface) in (0u32..).zip(&context.case.interfaces) {
+        let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };
+        if zone < IN_ZONE * size {
+            let place: &Place = &interface.place;
+            let [zone, size] = [zone, size].map(|length| quantity(length, "m"));
+            let found = format!(": its process zone of some {zone} meets faces of {size}");
+            let note = Diagnostic::warning(Code::CoarseMesh, place, found);
+            doubts.push(note.remedy("three faces at least resolve it: refine along the interface"));
+        }
+    }
+    doubts
+}
+
+/// Length of the process zone of an interface between the solids beside it, E G_I/f_t² [m], and the mean size of its faces [m]; none of one that
+/// was never joined.
+pub fn process_zone(solid: &Solid, interfaces: &Interfaces, kind: u32) -> Option<(f64, f64)> {
+    let law = &interfaces.kinds()[kind as usize].law;
+    let own: Vec<&InterfaceFace> = interfaces.faces().iter().filter(|face| face.kind == kind).collect();
+    if !law.is_bonded() || own.is_empty() {
+        return None;
+    }
+    let modulus = |face: &&InterfaceFace| {
+        let of = |(body, _): (u32, u32)| solid.body(body as usize).elastic.young_modulus;
+        of(face.elements[0]).min(of(face.elements[1]))
+    };
+    let modulus = own.iter().map(modulus).fold(f64::INFINITY, f64::min);
+    let (_, area) = interfaces.extent(kind);
+    let mean = area / own.len() as f64;
+    let shape = solid.body(own[0].elements[0].0 as usize).shape;
+    let size = match shape {
+        ElementKind::T3 => mean / solid.body(own[0].elements[0].0 as usize).thickness,
+        ElementKind::T4 => (mean * 4.0 / 3.0f64.sqrt()).sqrt(),
+    };
+    Some((modulus * law.opening_energy / (law.tensile_strength * law.tensile_strength), size))
+}

@@ -1,0 +1,35 @@
+//! Interfaces between elements.
+
+use super::key;
+use crate::key_kind::{KeyDoc, KeyKind as K};
+use crate::unit::Dimension as D;
+
+#[rustfmt::skip] // a table reads best with one row per line
+pub(super) static KEYS: &[KeyDoc] = &[
+    key("interfaces[]", K::Tables, "", "Inner faces of solids along which nodes are doubled, with a strength of their own; by one of group, between"),
+    key("interfaces[].name", K::Text, "interface-N", "Name, unique among interfaces"),
+    key("interfaces[].group", K::Text, "", "Mesh group of faces inside of solids: lines of 2D meshes, triangles of 3D meshes"),
+    key("interfaces[].between", K::Names, "", "Mesh groups of elements, two at least: the faces that any two of them have in common"),
+    key("interfaces[].bonded", K::Flag, "true", "false: its sides were never joined; they bear pressure and friction alone"),
+    key("interfaces[].tensile_strength", K::Quantity(D::PRESSURE), "required", "Traction at which it opens, > 0"),
+    key("interfaces[].cohesion", K::Quantity(D::PRESSURE), "tensile_strength", "Traction at which it slides without pressure, > 0"),
+    key("interfaces[].fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "required", "Energy per area that opens it, G_I, > 0"),
+    key("interfaces[].shear_fracture_energy", K::Quantity(D::FRACTURE_ENERGY), "fracture_energy", "Energy per area that breaks it by sliding, without friction, G_II, > 0"),
+    key("interfaces[].mixed_mode", K::Choice(mixed_modes), "\"power\"", "How opening and sliding share the energy: power is (G_1/G_I)^a + (G_2/G_II)^a = 1, benzeggagh-kenane is G_I + (G_II - G_I) B^a with the share B of sliding"),
+    key("interfaces[].mixed_mode_exponent", K::Quantity(D::NONE), "1", "The exponent a: 1 to 4. An ellipse has 2"),
+    key("interfaces[].softening", K::Choice(softenings), "\"linear\"", "Traction over opening and slip"),
+    key("interfaces[].normal_stiffness", K::Quantity(D::STIFFNESS_PER_AREA), "stiff", "Stiffness across the face, > 0. Absent: stiff until its strength is met, without a smaller time step"),
+    key("interfaces[].shear_stiffness", K::Quantity(D::STIFFNESS_PER_AREA), "normal_stiffness", "Stiffness along the face, > 0"),
+    key("interfaces[].friction_angle", K::Angle, "residual_friction_angle", "Angle of friction while it is whole: pressure p raises the strength against sliding by p times its tangent; from 0 to below 90 deg"),
+    key("interfaces[].residual_friction_angle", K::Angle, "\"0 deg\"", "Angle of friction once it is broken, from 0 to below 90 deg"),
+    key("interfaces[].dilation_angle", K::Angle, "\"0 deg\"", "Angle by which broken sides under pressure rise as they slide, from 0 to the residual friction angle"),
+    key("interfaces[].dilation_slip", K::Quantity(D::LENGTH), "no end", "Slip beyond which they rise no further, > 0"),
+];
+
+fn mixed_modes() -> Vec<&'static str> {
+    vec!["power", "benzeggagh-kenane"]
+}
+
+fn softenings() -> Vec<&'static str> {
+    vec!["linear", "exponential"]
+}

@@ -1,0 +1,49 @@
+//! Interfaces between elements as faces for ParaView.
+
+use fractum_math::Vec3;
+use fractum_scene::{FaceReading, InterfaceFace, Scene};
+use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
+
+use crate::OutputError;
+
+/// The faces of interfaces beside elements that are left, without load and with the mean displacement of both sides: opening, slip, tractions, the share of
+/// the strength that is left, and the number of the interface.
+///
+/// # Errors
+/// Arrays that do not fit together.
+pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
+    let (solid, interfaces) = (&scene.solid, scene.interfaces());
+    let readings = (0..interfaces.faces().len()).map(|face| (&interfaces.faces()[face], interfaces.reading(face)));
+    let faces: Vec<(&InterfaceFace, FaceReading)> = readings.filter(|(_, is)| is.area > 0.0).collect();
+    let plane = faces.iter().all(|(face, _)| face.corners() == 2);
+    // Corners of faces stand for themselves: both sides may open differently on either side of an edge.
+    let (mut points, mut displacement) = (Vec::new(), Vec::new());
+    for (face, _) in &faces {
+        for corner in 0..face.corners() {
+            let [a, b] = face.sides.map(|side| side[corner] as usize);
+            points.push(<[f64; 3]>::from(solid.reference[a]));
+            let mean = (solid.displacement_from_start(a) + solid.displacement_from_start(b)) * 0.5;
+            displacement.push(<[f64; 3]>::from(mean));
+        }
+    }
+    let lines: Vec<[u32; 2]> = (0..faces.len() as u32).map(|face| [2 * face, 2 * face + 1]).collect();
+    let triangles: Vec<[u32; 3]> = (0..faces.len() as u32).map(|face| [3 * face, 3 * face + 1, 3 * face + 2]).collect();
+    let cells = if plane { PolyCells::Lines(&lines) } else { PolyCells::Triangles(&triangles) };
+    let column = |of: fn(&FaceReading) -> f64| faces.iter().map(|(_, is)| of(is)).collect::<Vec<f64>>();
+    let (opening, residual) = (column(|is| is.opening), column(|is| is.residual));
+    let (normal, shear) = (column(|is| is.normal_traction), column(|is| is.shear_traction));
+    let slip: Vec<[f64; 3]> = faces.iter().map(|(_, is)| <[f64; 3]>::from(is.slip as Vec3)).collect();
+    let kinds: Vec<i32> = faces.iter().map(|(face, _)| face.kind as i32).collect();
+    let cell_data = [
+        Field::scalar("opening", &opening),
+        Field::vector("slip", &slip),
+        Field::scalar("normal_traction", &normal),
+        Field::scalar("shear_traction", &shear),
+        Field::scalar("strength_left", &residual),
+        Field::integer("interface", &kinds),
+    ];
+    let point_data = [Field::vector("displacement", &displacement)];
+    let time = Some(scene.clock.time);
+    let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time };
+    data.pending(Compression::Fast).map_err(OutputError::from)
+}

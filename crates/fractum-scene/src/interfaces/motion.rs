@@ -1,0 +1,186 @@
+//! Forces of interfaces in a step.
+
+use fractum_fem::Solid;
+use fractum_kernels::interface::{FreeJump, InterfaceLaw, SpringInterface, stiff_traction};
+use fractum_math::{Vec3, Work};
+use rayon::prelude::*;
+
+use super::{Cluster, InterfaceKind, Interfaces, Point, Taken};
+
+/// Sweeps over the stiff points of nodes in one place, and the change of their forces that is rounding.
+const SWEEPS: usize = 60;
+const ROUNDING: f64 = 1e-11;
+/// Clusters that one thread takes at least.
+const TOGETHER: usize = 128;
+
+/// A step as interfaces see it.
+pub(crate) struct InterfaceStep<'a> {
+    /// Step that led here; 0 where nothing has moved before [s].
+    pub(crate) elapsed: f64,
+    /// Step that follows [s].
+    pub(crate) dt_after: f64,
+    /// Bit a of a node is set where its axis a is prescribed; empty without supports.
+    pub(crate) held: &'a [u8],
+}
+
+impl InterfaceStep<'_> {
+    /// Duration that the forces of tⁿ change the velocity for [s].
+    fn dt_kick(&self) -> f64 {
+        0.5 * (self.elapsed + self.dt_after)
+    }
+}
+
+impl Interfaces {
+    /// Adds their forces, once all others but those of rigid shapes are there; what friction and the meeting of stiff sides took, and all other work that
+    /// they took [J].
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, step: &InterfaceStep) -> (Work, f64) {
+        self.turn(solid);
+        let Interfaces { kinds, clusters, .. } = self;
+        let of_solid = &*solid;
+        clusters.par_iter_mut().with_min_len(TOGETHER).for_each(|cluster| cluster.load(kinds, of_solid, step));
+        let mut sum = Taken::default();
+        for cluster in clusters {
+            for (&node, force) in cluster.nodes.iter().zip(&cluster.forces) {
+                solid.force[node as usize] += force;
+            }
+            let Taken { work, friction, impact } = cluster.taken;
+            sum = Taken { work: sum.work + work, friction: sum.friction + friction, impact: sum.impact + impact };
+        }
+        (Work::contact(0.0, sum.friction, sum.impact), sum.work - sum.friction - sum.impact)
+    }
+}
+
+impl Cluster {
+    /// Finds its forces at tⁿ and what the step before has taken.
+    fn load(&mut self, kinds: &[InterfaceKind], solid: &Solid, step: &InterfaceStep) {
+        let Cluster { nodes, points, forces, taken } = self;
+        forces.fill(Vec3::zeros());
+        *taken = Taken::default();
+        let mut stiff = 0;
+        for point in points.iter_mut().filter(|point| point.area > 0.0) {
+            let InterfaceKind { law, stiffness, .. } = &kinds[point.kind as usize];
+            let jump = jump(point, solid);
+            if step.elapsed > 0.0 {
+                taken.half(point, jump, closing(law, stiffness));
+            }
+            match stiffness {
+                Some(stiffness) => {
+                    let interface = SpringInterface { law: *law, stiffness: *stiffness };
+                    point.force = interface.load(point.frame * jump, &mut point.state);
+                    point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
+                    if step.elapsed > 0.0 {
+                        taken.half(point, jump, closing(law, &Some(*stiffness)));
+                    }
+                    point.jump = jump;
+                }
+                None => stiff += 1,
+            }
+            push(forces, point, point.pull);
+        }
+        if stiff == 0 {
+            return;
+        }
+        // They begin with the forces of the step before.
+        for _ in 0..SWEEPS {
+            let (mut change, mut largest) = (0.0f64, 0.0f64);
+            for point in points.iter_mut().filter(|point| point.area > 0.0) {
+                let InterfaceKind { law, stiffness: None, .. } = &kinds[point.kind as usize] else { continue };
+                let free = free_jump(point, nodes, forces, solid, step);
+                let mut state = point.state;
+                let found = stiff_traction(law, &free, &mut state);
+                let pull = point.frame.tr_mul(&found.traction()) * point.area;
+                change = change.max((pull - point.pull).norm());
+                largest = largest.max(pull.norm());
+                push(forces, point, pull - point.pull);
+                (point.pull, point.force, point.tried) = (pull, found, state);
+            }
+            if stiff == 1 || change <= ROUNDING * largest {
+                break;
+            }
+        }
+        for point in points.iter_mut().filter(|point| point.area > 0.0) {
+            let InterfaceKind { law, stiffness: stiffness @ None, .. } = &kinds[point.kind as usize] else { continue };
+            point.state = point.tried;
+            let jump = jump(point, solid);
+            if step.elapsed > 0.0 {
+                taken.half(point, jump, closing(law, stiffness));
+            }
+            point.jump = jump;
+        }
+    }
+}
+
+/// Where the work of pressure goes as a point moves along its normal.
+#[derive(Clone, Copy)]
+pub(super) enum Closing {
+    /// It is stored.
+    Stored,
+    /// Sides that meet lose it.
+    Lost,
+    /// Sliding over asperities gives and takes it.
+    Slides,
+}
+
+pub(super) fn closing(law: &InterfaceLaw, stiffness: &Option<[f64; 2]>) -> Closing {
+    match (stiffness, law.dilation > 0.0) {
+        (Some(_), _) => Closing::Stored,
+        (None, false) => Closing::Lost,
+        (None, true) => Closing::Slides,
+    }
+}
+
+impl Taken {
+    /// Adds the work that the present forces of a point do over half of its way to a jump.
+    pub(super) fn half(&mut self, point: &Point, jump: Vec3, closing: Closing) {
+        let way = jump - point.jump;
+        let local = point.frame * way;
+        let closed = -0.5 * point.area * point.force.contact * local.x;
+        self.work += 0.5 * point.pull.dot(&way);
+        self.friction += 0.5 * point.area * point.force.friction.dot(&local);
+        match closing {
+            Closing::Stored => {}
+            Closing::Lost => self.impact += closed,
+            Closing::Slides => self.friction += closed,
+        }
+    }
+}
+
+/// The jump across a point, in space [m].
+fn jump(point: &Point, solid: &Solid) -> Vec3 {
+    let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
+    b - a
+}
+
+/// Adds a force that pulls the sides of a point together.
+fn push(forces: &mut [Vec3], point: &Point, pull: Vec3) {
+    let [a, b] = point.local.map(usize::from);
+    forces[a] += pull;
+    forces[b] -= pull;
+}
+
+/// The jump of a point under all forces but its own.
+fn free_jump(point: &Point, nodes: &[u32], forces: &[Vec3], solid: &Solid, step: &InterfaceStep) -> FreeJump {
+    let jump = jump(point, solid);
+    let mobility = |side: usize| {
+        let node = point.pair[side] as usize;
+        solid.mobility(node, step.held.get(node).copied().unwrap_or(0))
+    };
+    let moves = mobility(0) + mobility(1);
+    let velocity = |side: usize| {
+        let place = usize::from(point.local[side]);
+        let node = nodes[place] as usize;
+        let force = solid.force[node] + forces[place];
+        solid.velocity[node] + mobility(side).component_mul(&force) * step.dt_kick()
+    };
+    let own = moves.component_mul(&point.pull) * step.dt_kick();
+    let ahead = jump + (velocity(1) - velocity(0) + own) * step.dt_after;
+    let unit = step.dt_after * step.dt_kick() * point.area;
+    let least = point.pair.iter().map(|&node| 1.0 / solid.mass[node as usize]).sum::<f64>();
+    let inertia = Vec3::from_fn(|axis, _| {
+        let row = point.frame.row(axis);
+        let along: f64 = row.iter().zip(moves.iter()).map(|(r, m)| r * r * m).sum();
+        // Supports that prescribe this motion leave nothing to find.
+        1.0 / (unit * if along > 1e-9 * least { along } else { least })
+    });
+    FreeJump { now: point.frame * jump, ahead: point.frame * ahead, inertia }
+}

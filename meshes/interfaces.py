@@ -1,0 +1,128 @@
+"""Plane blocks with lines inside, for cases/interfaces. Writes MSH 2.2 as text; needs no gmsh.
+
+python3 meshes/interfaces.py
+"""
+
+import math
+import random
+from pathlib import Path
+
+FOLDER = Path(__file__).parent / "interfaces"
+
+
+def write(path, points, groups):
+    """- `groups`: name -> (dimension, elements by their nodes)"""
+    kinds = {2: 1, 3: 2, 4: 4}
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", str(len(groups))]
+    lines += [f'{dimension} {tag} "{name}"' for tag, (name, (dimension, _)) in enumerate(groups.items(), 1)]
+    lines += ["$EndPhysicalNames", "$Nodes", str(len(points))]
+    lines += [f"{n} {x:.12g} {y:.12g} {z:.12g}" for n, (x, y, z) in enumerate(points, 1)]
+    elements = []
+    for tag, (_, members) in enumerate(groups.values(), 1):
+        for nodes in members:
+            corners = " ".join(str(node + 1) for node in nodes)
+            elements.append(f"{len(elements) + 1} {kinds[len(nodes)] if len(nodes) != 3 else 2} 2 {tag} {tag} {corners}")
+    lines += ["$EndNodes", "$Elements", str(len(elements)), *elements, "$EndElements", ""]
+    path.write_text("\n".join(lines))
+
+
+def rectangle(name, xs, ys, regions, lines, jitter=0.0, seed=1, turn=0.0):
+    """A rectangle of triangles.
+
+    - `regions`: name -> condition on the middle of an element; `lines`: name -> condition on a point of both ends of an edge
+    - `jitter`: share of a cell by which nodes off all lines move; `turn`: angle by which all of it turns [deg]
+    """
+    noise = random.Random(seed)
+    columns = len(xs)
+    points = []
+    for j, y in enumerate(ys):
+        for i, x in enumerate(xs):
+            inner = 0 < i < columns - 1 and 0 < j < len(ys) - 1
+            free = inner and not any(on(x, y) for on in lines.values())
+            dx, dy = noise.uniform(-jitter, jitter), noise.uniform(-jitter, jitter)
+            if free:
+                x, y = x + dx * (xs[i + 1] - xs[i]), y + dy * (ys[j + 1] - ys[j])
+            points.append((x, y))
+    triangles = []
+    for j in range(len(ys) - 1):
+        for i in range(columns - 1):
+            a, b = j * columns + i, j * columns + i + 1
+            c, d = b + columns, a + columns
+            triangles += [(a, b, c), (a, c, d)] if (i + j) % 2 == 0 else [(a, b, d), (b, c, d)]
+    edges = {tuple(sorted((t[k], t[(k + 1) % 3]))) for t in triangles for k in range(3)}
+    groups = {}
+    for region, holds in regions.items():
+        groups[region] = (2, [t for t in triangles if holds(*middle(points, t))])
+    for line, holds in lines.items():
+        groups[line] = (1, sorted(e for e in edges if all(holds(*points[n]) for n in e)))
+    angle = math.radians(turn)
+    c, s = math.cos(angle), math.sin(angle)
+    write(FOLDER / f"{name}.msh", [(c * x - s * y, s * x + c * y, 0.0) for x, y in points], groups)
+
+
+def middle(points, triangle):
+    return [sum(points[n][axis] for n in triangle) / 3 for axis in range(2)]
+
+
+def near(a, b):
+    return abs(a - b) < 1e-9
+
+
+def spaced(*parts):
+    """Places from (end, cells) after the start 0."""
+    places, at = [0.0], 0.0
+    for end, cells in parts:
+        places += [at + (end - at) * k / cells for k in range(1, cells + 1)]
+        at = end
+    return places
+
+
+def main():
+    FOLDER.mkdir(exist_ok=True)
+    # Double cantilever: 120 x 2 x 6 mm, bonded from 40 mm on.
+    rectangle(
+        "dcb",
+        spaced((0.120, 120)),
+        spaced((0.012, 12)),
+        {"lower": lambda x, y: y < 0.006, "upper": lambda x, y: y > 0.006},
+        {
+            "seam": lambda x, y: near(y, 0.006) and x > 0.04 - 1e-9,
+            "slit": lambda x, y: near(y, 0.006) and x < 0.04 + 1e-9,
+            "end": lambda x, y: near(x, 0.120),
+            "pull-lower": lambda x, y: near(x, 0.0) and y < 0.006 + 1e-9,
+            "pull-upper": lambda x, y: near(x, 0.0) and y > 0.006 - 1e-9,
+        },
+    )
+    # Direct shear: two halves of 100 x 25 mm.
+    rectangle(
+        "shear",
+        spaced((0.100, 20)),
+        spaced((0.050, 10)),
+        {"lower": lambda x, y: y < 0.025, "upper": lambda x, y: y > 0.025},
+        {
+            "bottom": lambda x, y: near(y, 0.0),
+            "top": lambda x, y: near(y, 0.050),
+            "joint": lambda x, y: near(y, 0.025),
+        },
+        jitter=0.2,
+    )
+    # A patch: a square whose middle line is an interface, turned.
+    rectangle(
+        "patch",
+        spaced((1.0, 8)),
+        spaced((1.0, 8)),
+        {"block": lambda x, y: True},
+        {
+            "left": lambda x, y: near(x, 0.0),
+            "right": lambda x, y: near(x, 1.0),
+            "bottom": lambda x, y: near(y, 0.0),
+            "top": lambda x, y: near(y, 1.0),
+            "joint": lambda x, y: near(x, 0.5),
+        },
+        jitter=0.25,
+        turn=27,
+    )
+
+
+if __name__ == "__main__":
+    main()
