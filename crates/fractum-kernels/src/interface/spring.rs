@@ -69,33 +69,18 @@ impl SpringInterface {
         }
     }
 
-    /// Stiffness by which the present traction changes with the jump [Pa/m]: normal, tangential. What gives way counts with a part of its secant.
+    /// Stiffness by which the present traction follows from the jump [Pa/m]: normal, tangential. What rubs counts by its secant.
     ///
-    /// - `force`, `state`: those of [`SpringInterface::load`] at `jump`; `before`: the history at the last equilibrium
-    /// - `giving`: that part, 0 to 1
+    /// - `force`, `state`: those of [`SpringInterface::load`] at `jump`
     #[inline]
-    pub fn stiffness_at(
-        &self,
-        jump: &Vec3,
-        force: &InterfaceForce,
-        [before, state]: [&InterfaceState; 2],
-        giving: f64,
-    ) -> [f64; 2] {
+    pub fn secant(&self, jump: &Vec3, force: &InterfaceForce, state: &InterfaceState) -> [f64; 2] {
         let [normal, across] = self.stiffness;
-        let whole = state.secant * if state.secant < before.secant { giving } else { 1.0 };
-        let broken = 1.0 - state.secant;
-        let trial = tangential(&Vec3::new(0.0, jump.y - before.slip[0], jump.z - before.slip[1]));
+        let (whole, broken) = (state.secant, 1.0 - state.secant);
+        let closed = if jump.x < 0.0 || force.contact > 0.0 { normal } else { whole * normal };
         let held = tangential(&Vec3::new(0.0, jump.y - state.slip[0], jump.z - state.slip[1]));
-        let rubs = match (force.contact > 0.0, held < trial) {
-            (false, _) => 0.0,
-            (true, false) => 1.0,
-            (true, true) => giving * held / trial,
-        };
-        let closed = if jump.x < 0.0 {
-            normal
-        } else {
-            whole * normal + if force.contact > 0.0 { broken * normal } else { 0.0 }
-        };
+        let went = tangential(jump);
+        let rubs = if went > 0.0 { (held / went).min(1.0) } else { 1.0 };
+        let rubs = if force.contact > 0.0 { rubs } else { 0.0 };
         [closed, (whole + broken * rubs) * across]
     }
 

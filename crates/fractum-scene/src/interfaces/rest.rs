@@ -1,4 +1,4 @@
-//! Interfaces at equilibrium: those with a stiffness are springs between two nodes, linear about the last iterate.
+//! Interfaces at equilibrium: those with a stiffness are springs between two nodes, linear about the last iterate by their secant.
 
 use fractum_fem::Solid;
 use fractum_kernels::interface::SpringInterface;
@@ -21,9 +21,7 @@ pub(crate) struct InterfaceSpring {
 
 impl Interfaces {
     /// Springs under a displacement field, with the histories of the last equilibrium.
-    ///
-    /// - `giving`: part of its secant by which what gives way is held
-    pub(crate) fn springs(&self, field: &[Vec3], giving: f64) -> impl Iterator<Item = InterfaceSpring> {
+    pub(crate) fn springs(&self, field: &[Vec3]) -> impl Iterator<Item = InterfaceSpring> {
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0);
         points.filter_map(move |point| {
             let InterfaceKind { law, stiffness, .. } = &self.kinds[point.kind as usize];
@@ -32,7 +30,7 @@ impl Interfaces {
             let jump = point.frame * (b - a);
             let mut state = point.state;
             let force = interface.load(jump, &mut state);
-            let [along, across] = interface.stiffness_at(&jump, &force, [&point.state, &state], giving);
+            let [along, across] = interface.secant(&jump, &force, &state);
             let secant = Mat3::from_diagonal(&Vec3::new(along, across, across)) * point.area;
             Some(InterfaceSpring {
                 pair: point.pair,

@@ -192,7 +192,7 @@ pub(super) fn contact_springs(
         Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
-    springs.extend(scene.interfaces().springs(field, slipping).map(|spring| {
+    springs.extend(scene.interfaces().springs(field).map(|spring| {
         let InterfaceSpring { pair: [partner, node], normal, force, stiffness } = spring;
         Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate: Vec3::zeros() }
     }));
