@@ -84,6 +84,13 @@ fn boundary(bencher: Bencher) {
 }
 
 #[divan::bench(sample_count = 10)]
+fn facets(bencher: Bencher) {
+    let mesh = mesh();
+    let count = ItemsCount::new(mesh.tetrahedra.len());
+    bencher.counter(count).bench(|| topology::facets_of_tetrahedra(&mesh.tetrahedra));
+}
+
+#[divan::bench(sample_count = 10)]
 fn hilbert_order(bencher: Bencher) {
     let mesh = mesh();
     let count = ItemsCount::new(mesh.nodes.len());

@@ -12,6 +12,31 @@ pub struct Edges<const M: usize> {
     pub of_element: Vec<[u32; M]>,
 }
 
+/// The facets of tetrahedra (S = 3 nodes, N = 4 per element), or the sides of triangles (S = 2, N = 3), with the
+/// elements on both sides.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Facets<const N: usize, const S: usize> {
+    /// Nodes of each facet, ascending; the facets ascend.
+    pub nodes: Vec<[u32; S]>,
+    /// The elements of each facet, lower first; the second is [`NO_ELEMENT`] on the boundary.
+    pub elements: Vec<[u32; 2]>,
+    /// The facets of each element; facet k lies opposite local node k.
+    pub of_element: Vec<[u32; N]>,
+}
+
+/// Stands for the element beyond the boundary in [`Facets::elements`].
+pub const NO_ELEMENT: u32 = u32::MAX;
+
+/// Elements that no solid can have: more than two at one facet.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("elements {elements:?} share the facet of nodes {nodes:?}; expected two at most: they overlap")]
+pub struct Overlap {
+    /// Nodes of the facet.
+    pub nodes: Vec<u32>,
+    /// All elements that have it, ascending.
+    pub elements: Vec<u32>,
+}
+
 /// A boundary triangle of tetrahedra.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Facet {
@@ -59,6 +84,27 @@ pub fn edges_of_triangles(elements: &[[u32; 3]]) -> Edges<3> {
 /// If an element names a node that is not below `node_count`.
 pub fn elements_of_nodes<const N: usize>(node_count: usize, elements: &[[u32; N]]) -> Ragged {
     Ragged::inverse(node_count, elements.iter().map(|nodes| nodes.as_slice()))
+}
+
+/// The elements of each edge, ascending.
+pub fn elements_of_edges<const M: usize>(edges: &Edges<M>) -> Ragged {
+    Ragged::inverse(edges.nodes.len(), edges.of_element.iter().map(|edges| edges.as_slice()))
+}
+
+/// The facets of tetrahedra with the elements on both sides.
+///
+/// # Errors
+/// [`Overlap`] for the first facet that more than two elements have.
+pub fn facets_of_tetrahedra(elements: &[[u32; 4]]) -> Result<Facets<4, 3>, Overlap> {
+    facets(elements, TETRAHEDRON_FACETS)
+}
+
+/// The sides of triangles with the elements on both sides.
+///
+/// # Errors
+/// [`Overlap`] for the first side that more than two elements have.
+pub fn sides_of_triangles(elements: &[[u32; 3]]) -> Result<Facets<3, 2>, Overlap> {
+    facets(elements, TRIANGLE_SIDES)
 }
 
 /// The facets that belong to one tetrahedron only, ascending by element and local facet.
@@ -209,6 +255,32 @@ fn single_sides<const N: usize, const S: usize>(elements: &[[u32; N]], local: [[
     single
 }
 
+fn facets<const N: usize, const S: usize>(
+    elements: &[[u32; N]],
+    local: [[usize; S]; N],
+) -> Result<Facets<N, S>, Overlap> {
+    let tasks = by_sides(elements, local, |sides| sides.to_vec());
+    let count = (N * elements.len()).div_ceil(2);
+    let mut facets = Facets {
+        nodes: Vec::with_capacity(count),
+        elements: Vec::with_capacity(count),
+        of_element: vec![[0; N]; elements.len()],
+    };
+    for equal in tasks.iter().flat_map(|sides| sides.chunk_by(|a, b| a.0 == b.0)) {
+        let nodes = equal[0].0;
+        if equal.len() > 2 {
+            let elements = equal.iter().map(|side| side.1).collect();
+            return Err(Overlap { nodes: nodes.to_vec(), elements });
+        }
+        for &(_, element, side) in equal {
+            facets.of_element[element as usize][side] = facets.nodes.len() as u32;
+        }
+        facets.nodes.push(nodes);
+        facets.elements.push([equal[0].1, equal.get(1).map_or(NO_ELEMENT, |side| side.1)]);
+    }
+    Ok(facets)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -237,10 +309,14 @@ mod tests {
                 }
             }
             prop_assert!(edges.nodes.iter().eq(expected.iter()));
+            let of_edges = elements_of_edges(&edges);
+            for (element, of_element) in edges.of_element.iter().enumerate() {
+                prop_assert!(of_element.iter().all(|&edge| of_edges.row(edge as usize).contains(&(element as u32))));
+            }
         }
 
         #[test]
-        fn boundaries_agree_with_counting_facets(elements in tangle()) {
+        fn facets_agree_with_counting_them(elements in tangle()) {
             let mut owners: BTreeMap<[u32; 3], Vec<u32>> = BTreeMap::new();
             for (element, nodes) in elements.iter().enumerate() {
                 for corners in TETRAHEDRON_FACETS {
@@ -253,6 +329,24 @@ mod tests {
             single.iter_mut().for_each(|nodes| nodes.sort_unstable());
             single.sort_unstable();
             prop_assert!(single.iter().eq(owners.iter().filter(|entry| entry.1.len() == 1).map(|entry| entry.0)));
+            match facets_of_tetrahedra(&elements) {
+                Err(overlap) => {
+                    let (nodes, elements) = owners.iter().find(|entry| entry.1.len() > 2).unwrap();
+                    prop_assert_eq!((&overlap.nodes[..], &overlap.elements), (&nodes[..], elements));
+                }
+                Ok(facets) => {
+                    prop_assert!(facets.nodes.iter().eq(owners.keys()));
+                    for (pair, owners) in facets.elements.iter().zip(owners.values()) {
+                        prop_assert_eq!(pair[0], owners[0]);
+                        prop_assert_eq!(pair[1], owners.get(1).copied().unwrap_or(NO_ELEMENT));
+                    }
+                    for (nodes, of_element) in elements.iter().zip(&facets.of_element) {
+                        for (opposite, facet) in of_element.iter().enumerate() {
+                            prop_assert!(!facets.nodes[*facet as usize].contains(&nodes[opposite]));
+                        }
+                    }
+                }
+            }
         }
     }
 
@@ -268,6 +362,9 @@ mod tests {
             assert!(outward.dot(&(a - center)) > 0.0);
             assert!(edge.nodes.iter().all(|node| mesh.triangles[edge.element as usize].contains(node)));
         }
+        let sides = sides_of_triangles(&mesh.triangles).unwrap();
+        assert_eq!(sides.elements.iter().filter(|pair| pair[1] == NO_ELEMENT).count(), 10);
+        assert_eq!(edges_of_triangles(&mesh.triangles).nodes, sides.nodes);
     }
 
     #[test]
@@ -277,7 +374,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let elements = &mesh.tetrahedra;
-                (edges_of_tetrahedra(elements), boundary_of_tetrahedra(elements))
+                (edges_of_tetrahedra(elements), boundary_of_tetrahedra(elements), facets_of_tetrahedra(elements))
             })
         };
         let serial = derive(1);
@@ -288,5 +385,6 @@ mod tests {
     fn nothing_has_no_topology() {
         assert!(edges_of_tetrahedra(&[]).nodes.is_empty());
         assert!(boundary_of_triangles(&[]).is_empty());
+        assert!(facets_of_tetrahedra(&[]).unwrap().nodes.is_empty());
     }
 }

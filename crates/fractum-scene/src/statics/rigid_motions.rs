@@ -18,7 +18,7 @@ pub(super) struct RigidMotion {
 pub(super) fn rigid_motions(scene: &Scene, bonds: impl Iterator<Item = [u32; 2]>) -> (usize, Vec<RigidMotion>) {
     let (solid, bonded) = (&scene.solid, &scene.bonded);
     let (particles, nodes) = (&bonded.particles, solid.reference.len());
-    let of_solids = pieces(solid);
+    let of_solids = pieces(solid, &[]);
     let within = of_solids.iter().flat_map(|(_, own)| own.windows(2).map(|pair| [pair[0], pair[1]]));
     let point = |particle: u32| nodes as u32 + particle;
     let ties = scene.ties.links().map(|(particle, node)| [point(particle), node]);
