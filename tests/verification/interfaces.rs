@@ -41,12 +41,24 @@ struct Bar {
     seed: u64,
     /// Law and stiffness; none for a bar in one piece.
     interface: Option<(InterfaceLaw, Option<[f64; 2]>)>,
+    /// Step [s]; absent means that of the elements.
+    step: Option<f64>,
 }
 
 impl Bar {
     fn new(kind: ElementKind, interface: Option<(InterfaceLaw, Option<[f64; 2]>)>) -> Self {
         let (cells, size, formulation) = ([8, 2], 0.01, Formulation::Smoothed);
-        Bar { kind, cells, size, poisson_ratio: 0.2, formulation, turn: Mat3::identity(), seed: 3, interface }
+        Bar {
+            kind,
+            cells,
+            size,
+            poisson_ratio: 0.2,
+            formulation,
+            turn: Mat3::identity(),
+            seed: 3,
+            interface,
+            step: None,
+        }
     }
 
     fn extent(&self) -> [f64; 2] {
@@ -115,7 +127,9 @@ impl Bar {
         let supports = Supports::new(supports(&mesh), &solid.reference).unwrap();
         let loads = Loads::new(Vec::new(), solid.reference.len());
         let debris = Debris::new(&solid, vec![ContactParameters::default()]);
-        let scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(end, 1e-2));
+        let mut settings = settings(end, 1e-2);
+        settings.time_step.fixed = self.step;
+        let scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings);
         (interfaces.into_iter().fold(scene, Scene::with_interfaces), mesh)
     }
 
@@ -234,10 +248,11 @@ fn a_patch_with_an_interface_is_exact_in_any_direction() {
 fn a_stiff_interface_moves_as_one_and_takes_nothing_of_the_step() {
     for kind in KINDS {
         let law = InterfaceLaw { tensile_strength: 1e12, cohesion: 1e12, ..LAW };
-        let bar = |interface| Bar { formulation: Formulation::Standard, interface, ..Bar::new(kind, None) };
+        let step = Some(5e-7);
+        let bar = |interface| Bar { formulation: Formulation::Standard, interface, step, ..Bar::new(kind, None) };
         let run = |interface| {
             let (mut scene, _) = bar(interface).pulled(Vec3::new(1.0, 0.3, 0.0), 2e-4);
-            let dt = scene.clock.dt_after;
+            let dt = scene.stable_dt();
             while !scene.is_finished() {
                 scene.step(true).unwrap();
             }
@@ -245,9 +260,10 @@ fn a_stiff_interface_moves_as_one_and_takes_nothing_of_the_step() {
             (dt, scene.solid.displacement[place.unwrap()], scene.ledger().residual_max_relative)
         };
         let [whole, cut] = [None, Some((law, None))].map(run);
-        assert!(cut.0 >= 0.999 * whole.0, "{kind:?}: step {:e} of {:e}", cut.0, whole.0);
+        // Nodes on the cut have the mass of one side alone.
+        assert!(cut.0 >= 0.9 * whole.0, "{kind:?}: step {:e} of {:e}", cut.0, whole.0);
         let apart = (whole.1 - cut.1).norm() / whole.1.norm();
-        assert!(apart < 1e-4, "{kind:?}: {apart:e}");
+        assert!(apart < 1e-9, "{kind:?}: {apart:e}");
         assert!(cut.2 < 1e-3, "{kind:?}: {}", cut.2);
     }
 }
@@ -263,23 +279,23 @@ fn a_bar_that_is_torn_has_the_strength_and_the_energy_of_its_interface() {
                 let opens = 2.0 * law.opening_energy / law.tensile_strength;
                 let last = if softening == InterfaceSoftening::Linear { 1.3 } else { 3.5 };
                 let end = 4e-3;
-                let (mut scene, right) = bar.pulled(Vec3::x() * (last * opens / end), end);
-                let places = scene.supports().places(&right);
+                let (mut scene, _) = bar.pulled(Vec3::x() * (last * opens / end), end);
                 let (mut peak, mut step) = (0.0f64, 0);
                 while !scene.is_finished() {
                     scene.step(step % 20 == 0).unwrap();
-                    peak = peak.max(scene.supports().reaction(&places, &Vec3::x()));
+                    let traction = |face: usize| scene.interfaces().reading(face).normal_traction;
+                    peak = (0..scene.interfaces().faces().len()).map(traction).fold(peak, f64::max);
                     step += 1;
                 }
                 let ledger = scene.ledger();
                 let [peak, spent] = [
-                    peak / (law.tensile_strength * bar.area()),
+                    peak / law.tensile_strength,
                     ledger[EnergyKind::InterfaceFracture] / (law.opening_energy * bar.area()),
                 ];
                 let name = format!("{kind:?} {softening:?} {stiffness:?}: peak {peak} energy {spent} {ledger:?}");
                 println!("{name}");
                 let left = if softening == InterfaceSoftening::Linear { 0.0 } else { (-2.0 * last).exp() };
-                assert!((peak - 1.0).abs() < 0.03, "{name}");
+                assert!((peak - 1.0).abs() < 0.01, "{name}");
                 assert!((spent - (1.0 - left)).abs() < 0.02, "{name}");
                 assert!(ledger.residual_max_relative < 1e-3, "{name}");
             }
