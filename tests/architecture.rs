@@ -24,7 +24,10 @@ const ARROWS: [(&str, &[&str]); 20] = [
     ("fractum-faer", &[]),
     ("fractum-gas", &["math"]),
     ("fractum-heat", &["math", "sparse"]),
-    ("fractum-scene", &["math", "mesh", "contact", "dem", "fem", "sparse", "faer", "gas", "heat", "parallel"]),
+    (
+        "fractum-scene",
+        &["math", "kernels", "mesh", "contact", "dem", "fem", "sparse", "faer", "gas", "heat", "parallel"],
+    ),
     ("fractum-output", &["math", "vtk", "fem", "dem", "scene"]),
     ("fractum-report", &["math", "vtk", "mesh", "fem", "scene", "output"]),
     ("fractum-prepare", &["math", "mesh", "dem", "pack", "calibrate", "scene", "output"]),
