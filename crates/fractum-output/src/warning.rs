@@ -125,6 +125,10 @@ codes! {
     SoftContact = "soft-contact",
     /// Changes of the time step, or of strains, brought or took a visible share of the energy.
     ChangeOfStep = "change-of-step",
+    /// Friction, damping or the fracture of interfaces gave energy.
+    EnergyGained = "energy-gained",
+    /// Sides of an interface slid by a visible part of a face.
+    InterfaceSlip = "interface-slip",
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.

@@ -13,7 +13,7 @@ use crate::watch::{Notice, Site};
 /// Elastic energy over all energy put in, above which a run is unstable: a mode of the highest frequency at 0.95 of the
 /// stable step reaches 10.
 const UNSTABLE_RATIO: f64 = 20.0;
-/// Share of the energy that changes of the step may bring or take before a word is said.
+/// Share of the energy that changes of the step may bring or take, and friction may give, before a word is said.
 const VISIBLE_CHANGE: f64 = 5e-3;
 
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
@@ -97,17 +97,31 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     if ratio > UNSTABLE_RATIO {
         return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: culprit(scene) });
     }
-    // The ledger knows this entry, and so closes; it is an error of the run all the same. In the first half little may be in play yet.
-    let late = scene.clock.time > 0.5 * scene.settings.time_step.end;
-    let share = (scene.books.time_step / scene.ledger.scale).abs();
-    if late && scene.ledger.scale > 0.0 && share > VISIBLE_CHANGE {
-        scene.note(Notice::ChangeOfStep, Site::Scene, share);
-    }
+    note_what_the_ledger_hides(scene);
     let allowed = scene.settings.balance_stop;
     if relative > allowed {
         return Err(StepError::Unbalanced { step, time, relative, allowed, dt, limit, culprit: culprit(scene) });
     }
     Ok(())
+}
+
+/// Errors of a run that have entries of their own, so that the ledger closes with them.
+fn note_what_the_ledger_hides(scene: &mut Scene) {
+    // In the first half little may be in play yet.
+    let late = scene.clock.time > 0.5 * scene.settings.time_step.end;
+    let scale = scene.ledger.scale;
+    if !late || scale <= 0.0 {
+        return;
+    }
+    let changed = (scene.books.time_step / scale).abs();
+    if changed > VISIBLE_CHANGE {
+        scene.note(Notice::ChangeOfStep, Site::Scene, changed);
+    }
+    let can_only_take = [EnergyKind::Friction, EnergyKind::Damping, EnergyKind::InterfaceFracture];
+    let given = can_only_take.into_iter().map(|kind| -scene.ledger[kind] / scale).fold(0.0, f64::max);
+    if given > VISIBLE_CHANGE {
+        scene.note(Notice::Gained, Site::Scene, given);
+    }
 }
 
 /// The element or bonded particle with the largest kinetic energy, or with a value that is not a number.

@@ -89,10 +89,12 @@ pub(crate) fn warm_to(scene: &mut Scene, target: f64) -> Result<(), StepError> {
     heat.warm_to([time, target], solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })
 }
 
-/// Takes the expansion of an equilibrium as done; returns half of its work, at the stresses of the one before [J].
-pub(crate) fn settle_expansion(scene: &mut Scene) -> f64 {
+/// Takes the temperatures of an equilibrium at a time; returns half of the work of its expansion, at the stresses of the one before [J].
+pub(crate) fn settle_heat(scene: &mut Scene, target: f64) -> Result<f64, StepError> {
+    let (step, time) = (scene.clock.step, scene.clock.time);
     let Scene { optional, solid, bonded, .. } = scene;
-    optional.heat.as_mut().map_or(0.0, |heat| heat.settle_expansion(solid, bonded))
+    let Some(heat) = &mut optional.heat else { return Ok(0.0) };
+    heat.settle(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })
 }
 
 /// The other half, at the stresses of the equilibrium [J].

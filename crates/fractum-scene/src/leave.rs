@@ -89,7 +89,8 @@ pub(crate) fn remove_departed_fragments(scene: &mut Scene, dt: f64) {
     if !outside.iter().zip(&gone).any(|(outside, gone)| *outside && !gone) {
         return;
     }
-    let piece = parts(solid, &[]);
+    let joined: Vec<[u32; 2]> = scene.interfaces().links(scene.settings.joined_below).collect();
+    let piece = parts(solid, &joined);
     let mut stays = vec![false; gone.len()];
     outside.iter().zip(&piece).filter(|(outside, _)| !**outside).for_each(|(_, &p)| stays[p as usize] = true);
     each_bound_node(scene, |node| stays[piece[node as usize] as usize] = true);
@@ -137,6 +138,9 @@ fn take_leave(scene: &mut Scene, leaves: &[bool], piece: &[u32], dt: f64) {
         removals.left.pieces += usize::from(piece[node] as usize == node);
         removals.left.push(node as u32);
     }
+    let in_interfaces = scene.optional.interfaces.lose(&scene.solid, &elements);
+    energy += in_interfaces;
+    scene.books.interfaces -= in_interfaces;
     scene.removals.left.elements += elements.len();
     if !elements.is_empty() {
         heat_loses_elements(scene);

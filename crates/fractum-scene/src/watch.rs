@@ -28,10 +28,14 @@ pub enum Notice {
     Springs,
     /// Changes of the time step, or of the strains of a body that begins to turn, have brought or taken a visible share of the energy [-].
     ChangeOfStep,
+    /// Friction, damping or the fracture of interfaces have given a visible share of the energy, which they can only take [-].
+    Gained,
+    /// Sides of an interface have slid by a visible part of a face [-].
+    InterfaceSlip,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::ChangeOfStep as usize + 1;
+    const COUNT: usize = Notice::InterfaceSlip as usize + 1;
 }
 
 /// Where something was noticed.

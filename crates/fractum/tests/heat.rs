@@ -354,8 +354,10 @@ checkpoint = { every = "1 us" }
 "#;
 
 /// Two layers of 2 mm, 60 mm long, that have nodes in common.
-fn layers() -> Mesh {
-    let mut mesh = structured_rectangle([120, 16], [0.06, 0.004], None);
+///
+/// - `cells`: along them, and through both
+pub(crate) fn layers(cells: [u32; 2]) -> Mesh {
+    let mut mesh = structured_rectangle(cells, [0.06, 0.004], None);
     let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
     let is_up = |triangle: u32| {
         mesh.triangles[triangle as usize].iter().map(|&node| mesh.nodes[node as usize].y).sum::<f64>() > 3.0 * 0.002
@@ -369,7 +371,7 @@ fn layers() -> Mesh {
 
 #[test]
 fn layers_at_rest_bend_as_timoshenko_says() {
-    let mesh = mesh_bytes(&layers(), MshFormat::V4_1Binary);
+    let mesh = mesh_bytes(&layers([120, 16]), MshFormat::V4_1Binary);
     // Timoshenko (1925): curvature of layers of one thickness, n the ratio of their moduli.
     let (n, height) = (200.0 / 70.0, 4e-3);
     let curvature = 6.0 * 1e-5 * 100.0 * 4.0 / (height * (12.0 + (1.0 + n) * (1.0 + 1.0 / n)));

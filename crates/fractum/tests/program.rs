@@ -20,6 +20,7 @@ mod mesh;
 mod modes;
 mod new;
 mod parts;
+mod peeling;
 mod processor;
 mod ranks;
 mod ranks_mesh;

@@ -6,11 +6,11 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{InterfaceFace, InterfaceKind, Interfaces, Scene};
+use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scene};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
-use crate::model::{Case, InterfaceFaces, SolverKind};
+use crate::model::{Case, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
 use crate::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Elements in a process zone below which it is not resolved.
@@ -141,8 +141,26 @@ pub(super) fn check(context: &mut Context<'_>) {
     if case.flows.heat.is_some() {
         context.error(&place, "with [heat]", "solids without heat: none flows across interfaces");
     }
+    check_cracks(context, &place);
     if context.exchange.is_some() || context.division.is_some() {
         context.error(&place, "in a run of several processes", "one process; threads are not limited");
+    }
+}
+
+/// Pressure and counts go through cracks between elements alone.
+fn check_cracks(context: &mut Context<'_>, place: &Place) {
+    let case = context.case;
+    if case.flows.gas.as_ref().is_some_and(|gas| gas.in_cracks) {
+        context.error(place, "beside gas that flows in cracks", "gas.in_cracks = false: it does not enter interfaces");
+    }
+    let presses = |load: &&Load| matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
+    if case.loads.iter().any(|load| presses(&load)) {
+        context.error(place, "beside loads[].in_cracks", "a pressure on facets alone: it does not enter interfaces");
+    }
+    let counts = |kind: &ProbeKind| matches!(kind, ProbeKind::Crack(crack) if crack.measure == CrackMeasure::Count);
+    for probe in case.probes.iter().filter(|probe| counts(&probe.kind)) {
+        let found = format!("= \"{}\": interfaces are not counted as cracks", probe.name.value);
+        context.error(&probe.name.place, found, "crack.measure = \"area\", \"length\" or \"tip\" beside interfaces");
     }
 }
 

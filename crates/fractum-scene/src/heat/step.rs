@@ -77,7 +77,7 @@ impl Heat {
         expansion.as_mut().map_or(0.0, |expansion| expansion.lead(time, solid, bonded, field.temperature()))
     }
 
-    /// Conducts to the end of a step of equilibria at most, and expands bodies by the temperatures of `target`.
+    /// Has bodies that expand in equilibrium at `target`: conducts to the end of a step of equilibria at most.
     ///
     /// - `time`: of the last equilibrium [s]
     pub(crate) fn warm_to(
@@ -86,22 +86,29 @@ impl Heat {
         solid: &mut Solid,
         bonded: &Bonded,
     ) -> Result<(), String> {
+        if self.expansion.is_none() {
+            return Ok(());
+        }
         // A shorter step than was tried finds its temperatures between those of the longer one.
-        if target > self.field.time() * (1.0 + SAME_TIME) {
+        let is_new = target > self.field.time() * (1.0 + SAME_TIME);
+        if is_new {
             self.conduct_to(target, solid, bonded)?;
-            if let Some(expansion) = &mut self.expansion {
-                expansion.begin([time, target], solid, self.field.temperature());
-            }
         }
         if let Some(expansion) = &mut self.expansion {
+            if is_new {
+                expansion.begin([time, target], solid, self.field.temperature());
+            }
             expansion.try_at(target, solid, self.field.temperature());
         }
         Ok(())
     }
 
-    /// Takes the expansion that was tried as done; returns half of its work, at the stresses of before [J].
-    pub(crate) fn settle_expansion(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
-        self.expansion.as_mut().map_or(0.0, |expansion| expansion.settle(solid, bonded))
+    /// Takes the temperatures of an equilibrium at `time`; returns half of the work of the expansion that was tried, at the stresses of before [J].
+    pub(crate) fn settle(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded) -> Result<f64, String> {
+        match &mut self.expansion {
+            Some(expansion) => Ok(expansion.settle(solid, bonded)),
+            None => self.conduct_to(time, solid, bonded).map(|()| 0.0),
+        }
     }
 
     /// The other half [J]; nothing expands from here to there any more.

@@ -176,11 +176,14 @@ fn free_jump(point: &Point, nodes: &[u32], forces: &[Vec3], solid: &Solid, step:
     let ahead = jump + (velocity(1) - velocity(0) + own) * step.dt_after;
     let unit = step.dt_after * step.dt_kick() * point.area;
     let least = point.pair.iter().map(|&node| 1.0 / solid.mass[node as usize]).sum::<f64>();
+    // Where supports hold one axis of the nodes alone, a force along the normal moves them across it, too. Both then share the same motion, and each may
+    // take its part of it: by the sum of a row of the mobility no direction takes back more than there is.
     let inertia = Vec3::from_fn(|axis, _| {
-        let row = point.frame.row(axis);
-        let along: f64 = row.iter().zip(moves.iter()).map(|(r, m)| r * r * m).sum();
+        let along =
+            |other: usize| -> f64 { (0..3).map(|k| point.frame[(axis, k)] * moves[k] * point.frame[(other, k)]).sum() };
+        let (own, all) = (along(axis), (0..3).map(|other| along(other).abs()).sum::<f64>());
         // Supports that prescribe this motion leave nothing to find.
-        1.0 / (unit * if along > 1e-9 * least { along } else { least })
+        1.0 / (unit * if own > 1e-9 * least { all } else { least })
     });
     FreeJump { now: point.frame * jump, ahead: point.frame * ahead, inertia }
 }

@@ -89,6 +89,15 @@ impl Interfaces {
         mean
     }
 
+    /// The element beside the face whose sides have slid farthest, and how far over the length of its first edge.
+    pub(crate) fn farthest_slip(&self, solid: &Solid) -> Option<((u32, u32), f64)> {
+        let slid = |(index, face): (usize, &InterfaceFace)| {
+            let [a, b, _] = face.sides[0].map(|node| solid.reference[node as usize]);
+            (face.elements[0], self.reading(index).slip.norm() / (b - a).norm())
+        };
+        self.faces.iter().enumerate().map(slid).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Faces of bonded interfaces with the part of them that is broken: face, part, area [m²].
     pub fn broken(&self) -> impl Iterator<Item = (&InterfaceFace, f64, f64)> {
         let bonded = |face: &InterfaceFace| self.kinds[face.kind as usize].law.is_bonded();

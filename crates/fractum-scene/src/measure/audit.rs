@@ -23,6 +23,9 @@ const PRESSED: f64 = 20.0;
 /// Overlap over the radius beyond which Hertz' law of small contacts is off by some ten percent.
 const DEEP: f64 = 0.1;
 
+/// Slip over the size of a face beyond which its sides are not opposite each other any more.
+const SLID: f64 = 0.5;
+
 impl Scene {
     /// Looks whether the present state is still one that the models of the scene know. Nothing of the state changes.
     pub fn audit(&mut self) {
@@ -30,6 +33,7 @@ impl Scene {
         look_at_damping(self);
         look_at_springs(self);
         look_at_solids(self);
+        look_at_interfaces(self);
         self.look_at_overlaps();
     }
 
@@ -110,6 +114,17 @@ fn look_at_solids(scene: &mut Scene) {
         if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {
             scene.note(what, Site::Element { body, element }, value);
         }
+    }
+}
+
+fn look_at_interfaces(scene: &mut Scene) {
+    if scene.interfaces().is_empty() || has_noticed(scene, Notice::InterfaceSlip) {
+        return;
+    }
+    if let Some(((body, element), slip)) =
+        scene.interfaces().farthest_slip(&scene.solid).filter(|(_, slip)| *slip > SLID)
+    {
+        scene.note(Notice::InterfaceSlip, Site::Element { body: body as usize, element }, slip);
     }
 }
 

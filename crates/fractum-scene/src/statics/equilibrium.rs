@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::contact::accept_contacts;
 use crate::balance::book_equilibrium;
-use crate::conduct::{finish_settled_expansion, settle_expansion};
+use crate::conduct::{finish_settled_expansion, settle_heat};
 use crate::error::StepError;
 use crate::scene::Scene;
 use crate::step::{StepReport, release_cut_elements};
@@ -73,7 +73,7 @@ pub(super) fn accept_equilibrium(
     outer: &mut AppliedForces,
 ) -> Result<StepReport, StepError> {
     let before = std::mem::replace(&mut scene.solid.displacement, displacement.to_vec());
-    let mut external = settle_expansion(scene);
+    let mut external = settle_heat(scene, time)?;
     scene.solid.update_internal_forces(0.0, true);
     external += finish_settled_expansion(scene);
     let inner = scene.solid.force.clone();

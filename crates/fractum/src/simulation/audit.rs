@@ -242,6 +242,22 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             ),
             "set kinematics = \"corotational\" on bodies that turn, or take a smaller solver.safety",
         ),
+        Notice::Gained => (
+            Code::EnergyGained,
+            format!(
+                "friction, damping or interfaces have given {} of the energy, which they can only take",
+                percent(*value)
+            ),
+            "do not trust this run: take a smaller solver.safety or more damping, and supports that hold one side of an interface alone",
+        ),
+        Notice::InterfaceSlip => (
+            Code::InterfaceSlip,
+            format!(
+                "the sides of the interface beside it have slid by {} of a face, and are not opposite each other any more",
+                percent(*value)
+            ),
+            "they still press on where they were, and meet nothing else: end the run before, or take larger elements along it",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(

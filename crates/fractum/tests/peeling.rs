@@ -1,0 +1,90 @@
+//! Interfaces between elements, as their user meets them.
+
+use fractum_mesh::MshFormat;
+
+use crate::common::{Workplace, mesh_bytes, run};
+use crate::heat::layers;
+
+/// Two layers that an interface joins, peeled off each other at one end.
+const PEELED: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+[materials.m]
+density = "2500 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = NU
+[[bodies]]
+name = "low"
+kind = "solid"
+group = "body"
+material = "m"
+plane = "stress"
+thickness = "10 mm"
+[[bodies]]
+name = "up"
+kind = "solid"
+group = "up"
+material = "m"
+plane = "stress"
+thickness = "10 mm"
+[[interfaces]]
+between = ["body", "up"]
+tensile_strength = "2 MPa"
+cohesion = "3 MPa"
+fracture_energy = "20 J/m^2"
+residual_friction_angle = "30 deg"
+[[supports]]
+where = "x < 0.01 mm"
+fix = "xy"
+[[supports]]
+where = "x > 59.99 mm && y > 1.99 mm"
+velocity = { y = { ramp = [["0 s", "0 m/s"], ["0.5 ms", "SPEED"]] } }
+[[supports]]
+where = "x > 59.99 mm && y < 0.01 mm"
+velocity = { y = { ramp = [["0 s", "0 m/s"], ["0.5 ms", "-SPEED"]] } }
+[[probes]]
+name = "cracked"
+crack_area = true
+[solver]
+end = "1 ms"
+"#;
+
+#[test]
+fn supports_that_hold_nodes_of_both_sides_bring_no_energy() {
+    // The nodes of both sides at the end are held along y alone, while the sides turn.
+    let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
+    for (nu, speed, safety) in [("0.3", "0.5 m/s", "0.8"), ("0", "0.5 m/s", "0.4"), ("0.45", "0.2 m/s", "0.8")] {
+        let case = PEELED.replace("NU", nu).replace("SPEED", speed);
+        let case = case.replace("[solver]\n", &format!("[solver]\nsafety = {safety}\n"));
+        let summary = run(&Workplace::with_mesh(&case, &mesh), "out", "1");
+        let energy = |name: &str| summary["energy"][name].as_f64().unwrap();
+        let external = energy("external");
+        for name in ["friction", "damping", "interface_fracture"] {
+            assert!(energy(name) > -1e-5 * external, "nu {nu}, {speed}, {safety}: {name} {}", summary["energy"]);
+        }
+        assert!(energy("kinetic") < 0.05 * external, "nu {nu}, {speed}, {safety}: {}", summary["energy"]);
+        let spent = energy("interface_fracture") + energy("interfaces");
+        let cracked = summary["probes"]["cracked"]["final"].as_f64().unwrap();
+        assert!(spent > 0.95 * 20.0 * cracked, "nu {nu}, {speed}, {safety}: {spent} J for {cracked} m2");
+    }
+}
+
+#[test]
+fn what_does_not_enter_interfaces_is_refused() {
+    let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
+    let case = PEELED.replace("NU", "0.3").replace("SPEED", "0.5 m/s");
+    let solver = |text: &str| case.replace("end = \"1 ms\"\n", &format!("end = \"1 ms\"\n{text}"));
+    let rest = |text: &str| case.replace("[solver]\n", &format!("{text}[solver]\n"));
+    let pressed = "[[loads]]\nwhere = \"y < 0.01 mm\"\npressure = \"1 MPa\"\nin_cracks = true\n";
+    for (text, words) in [
+        (solver("kind = \"static\"\n"), "give normal_stiffness"),
+        (case.replace("end = \"1 ms\"", "kind = \"modes\""), "with solver.kind = \"modes\""),
+        (rest("[in_situ]\nstress = { xx = \"-1 MPa\" }\n"), "with [in_situ]"),
+        (rest(pressed), "beside loads[].in_cracks"),
+        (case.replace("crack_area = true", "crack = { measure = \"count\" }"), "interfaces are not counted as cracks"),
+    ] {
+        let ended = Workplace::with_mesh(&text, &mesh).fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{words}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}
