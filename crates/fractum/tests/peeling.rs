@@ -88,3 +88,37 @@ fn what_does_not_enter_interfaces_is_refused() {
         assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
     }
 }
+
+#[test]
+fn a_solver_that_is_left_open_is_motion_beside_interfaces() {
+    // Slow, so that equilibrium would be cheaper; stiff interfaces have no force there.
+    let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
+    let case = PEELED.replace("NU", "0.3").replace("SPEED", "1 mm/s").replace("0.5 ms", "100 ms");
+    let case = case.replace("end = \"1 ms\"", "kind = \"auto\"\nend = \"100 ms\"");
+    let spring = case.replace("cohesion", "normal_stiffness = \"1e13 Pa/m\"\ncohesion");
+    for case in [case, spring] {
+        let ended = Workplace::with_mesh(&case, &mesh).fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert!(ended.stdout.contains("interfaces go with motion"), "{}", ended.stdout);
+        assert!(ended.stdout.contains("time step"), "{}", ended.stdout);
+    }
+}
+
+#[test]
+fn what_an_interface_joins_leaves_the_domain_as_one() {
+    let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
+    let case = PEELED.replace("NU", "0.3");
+    let flying = &case[..case.find("[[supports]]").unwrap()];
+    let flying = flying.replace("thickness", "initial_velocity = { y = \"10 m/s\" }\nthickness");
+    // The upper layer is outside from 0.2 ms on, the lower one from 0.4 ms on.
+    let within = "domain = { min = [\"-1 m\", \"-1 m\", \"-1 m\"], max = [\"1 m\", \"4 mm\", \"1 m\"] }";
+    for (end, gone) in [("0.3 ms", false), ("0.6 ms", true)] {
+        let text = format!("{flying}[solver]\nend = \"{end}\"\n{within}\n");
+        let summary = run(&Workplace::with_mesh(&text, &mesh), "out", "1");
+        let energy = |name: &str| summary["energy"][name].as_f64().unwrap();
+        let whole = 0.5 * 2500.0 * 0.06 * 0.004 * 0.01 * 100.0;
+        let left = energy("left") / whole;
+        assert!((left - f64::from(u8::from(gone))).abs() < 1e-9, "{end}: {left} of all has left");
+        assert!(energy("residual_max_relative") < 1e-9, "{}", summary["energy"]);
+    }
+}

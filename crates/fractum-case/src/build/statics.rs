@@ -21,7 +21,8 @@ pub(super) fn statics(context: &mut Context<'_>, solid: &Solid, numbering: &Numb
     let place = place_of_solver(context);
     if solver.kind == SolverKind::Auto {
         // What is not for equilibrium is for motion; whether the supports hold is seen on the whole scene.
-        let possible = solid.not_secant().is_none() && context.case.bodies.iter().all(may_rest);
+        let case = context.case;
+        let possible = solid.not_secant().is_none() && case.bodies.iter().all(may_rest) && case.interfaces.is_empty();
         return possible.then(|| static_settings(context, solid, numbering)).flatten();
     }
     if let Some((body, why)) = solid.not_secant() {

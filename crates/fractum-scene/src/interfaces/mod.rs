@@ -276,6 +276,9 @@ impl Interfaces {
                 }
                 for (cluster, point) in self.points_of[face as usize].into_iter().flatten() {
                     let point = &mut self.clusters[cluster as usize].points[point as usize];
+                    if point.area == 0.0 {
+                        continue;
+                    }
                     let share: f64 = point.faces.iter().filter(|own| own.0 == face).map(|own| own.1.abs()).sum();
                     let left = if point.faces.len() == 1 { 0.0 } else { (point.area - share).max(0.0) };
                     let ratio = left / point.area;

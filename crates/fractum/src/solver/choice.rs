@@ -222,6 +222,9 @@ fn motion_only(case: &Case, scene: &Scene) -> Option<&'static str> {
         Some("gas is for motion only")
     } else if case.flows.heat.is_some() {
         Some("heat goes with motion unless kind = \"static\" asks for equilibrium")
+    } else if !case.interfaces.is_empty() {
+        // Stiff ones know motion alone, and of the others no time of solution is known.
+        Some("interfaces go with motion unless kind = \"static\" asks for equilibrium")
     } else if case.supports.iter().any(|support| support.surface.is_some()) {
         Some("absorbing and elastic supports act in motion only")
     } else if !case.bodies.iter().all(may_rest) {
