@@ -77,8 +77,9 @@ pub(crate) fn stable_dt_at(scene: &Scene, solids: f64, contacts: f64) -> f64 {
 pub(crate) fn next_dt(scene: &Scene, time: f64) -> f64 {
     let TimeStepSettings { safety, fixed, end, .. } = scene.settings.time_step;
     let dt = fixed.unwrap_or_else(|| safety * scene.stable_dt());
-    // Where all has left the domain nothing asks for a step.
-    equal_steps(if dt.is_finite() { dt } else { scene.clock.dt_after }, end - time)
+    // Where all has left the domain nothing asks for a step; it goes on as it was.
+    let before = if scene.clock.dt_after > 0.0 { scene.clock.dt_after } else { end - time };
+    equal_steps(if dt.is_finite() { dt } else { before }, end - time)
 }
 
 /// Finds, before the first step, what rigid shapes hold, and what their springs ask of the step.
