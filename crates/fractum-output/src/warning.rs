@@ -87,6 +87,8 @@ codes! {
     FarFromOrigin = "far-from-origin",
     /// A body much smaller than its process zone.
     ProcessZone = "process-zone",
+    /// An interface that rubs in motion without damping.
+    UndampedSliding = "undamped-sliding",
     /// Elements close to the length at which softening snaps back.
     CoarseMesh = "coarse-mesh",
     /// A length of the phase field below that of the elements.

@@ -142,6 +142,17 @@ fn clamped_bodies_are_pressed_and_free_ones_grow_with_the_same_bits_on_any_threa
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 
+/// The bonded body by itself, in equilibrium.
+fn at_rest() -> String {
+    let part = |from: &str, to: &str| &HOT[HOT.find(from).unwrap()..HOT.find(to).unwrap()];
+    let materials = part("[materials.stone]", "[[bodies]]\nname = \"bar\"");
+    let body = part("[[bodies]]\nname = \"box\"", "[[supports]]");
+    format!(
+        "fractum = 1\n{materials}{body}[[supports]]\ngroup = \"box.x-\"\nfix = \"xyz\"\n[[supports]]\ngroup = \"box.x+\"\n\
+         velocity = {{ x = \"1 mm/s\" }}\n[heat]\ninitial_temperature = \"293 K\"\n[solver]\nkind = \"static\"\nend = \"6 ms\"\n"
+    )
+}
+
 /// The same bodies without motion: prescribed temperature, flux, convection.
 fn alone(steps: &str) -> String {
     let conditions = r#"[[heat.conditions]]
@@ -226,6 +237,7 @@ fn what_heat_cannot_do_is_told_with_its_remedy() {
             "does not flow back along a path of equilibrium",
         ),
         (hot.replace("\"400 K\"", "\"400 C\""), "400 C"),
+        (at_rest(), "beside a bonded body at rest"),
     ] {
         let place = Workplace::new(&text);
         let ended = place.fractum(&["check", "case.toml"]);

@@ -10,7 +10,7 @@ use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scen
 
 use super::Context;
 use super::bodies::{Numbering, Part};
-use crate::model::{Case, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
+use crate::model::{Case, Interface, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
 use crate::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Elements in a process zone below which it is not resolved.
@@ -169,6 +169,16 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
     let interfaces = scene.interfaces();
     let mut doubts = Vec::new();
     for (kind, interface) in (0u32..).zip(&context.case.interfaces) {
+        if rubs_undamped(context.case, interface) {
+            let note = Diagnostic::warning(
+                Code::UndampedSliding,
+                &interface.place,
+                ": it rubs in motion, and the case has no damping",
+            );
+            doubts.push(note.remedy(
+                "where it slides steadily its vibrations make the mean shear force too small: set [damping], or load it at rest with a stiffness",
+            ));
+        }
         let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };
         if zone < IN_ZONE * size {
             let place: &Place = &interface.place;
@@ -179,6 +189,13 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
         }
     }
     doubts
+}
+
+/// Whether an interface may slide under friction in motion that nothing damps.
+fn rubs_undamped(case: &Case, interface: &Interface) -> bool {
+    let damping = &case.damping;
+    let damped = [damping.local, damping.mass, damping.stiffness].iter().any(|value| *value > 0.0);
+    interface.law.residual_friction > 0.0 && !damped && case.solver.kind != SolverKind::Static
 }
 
 /// Length of the process zone of an interface between the solids beside it, E G_I/f_t² [m], and the mean size of its faces [m]; none of one that

@@ -103,6 +103,10 @@ pub(super) fn bonded_statics(context: &mut Context<'_>, bonded: &Bonded) -> Opti
     let options = solver.statics.as_ref().filter(|_| solver.kind == SolverKind::Static)?;
     let [Body { kind: BodyKind::Bonded(_), .. }] = context.case.bodies.as_slice() else { return None };
     let place = place_of_solver(context);
+    if let Some(heat) = &context.case.flows.heat {
+        let place = heat.place.clone();
+        context.error(&place, "beside a bonded body at rest", "solids, or solver.kind = \"explicit\"");
+    }
     if bonded.held_count() == 0 {
         context.error(&place, "= \"static\" with a bonded body and no support", "at least one [[supports]]");
     }
