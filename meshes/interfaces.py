@@ -93,6 +93,17 @@ def main():
             "pull-upper": lambda x, y: near(x, 0.0) and y > 0.006 - 1e-9,
         },
     )
+    # End-notched flexure: 100 x 2 x 3 mm, never joined up to 36 mm.
+    rectangle(
+        "enf",
+        spaced((0.034, 48), (0.046, 48), (0.050, 8), (0.100, 60)),
+        spaced((0.006, 20)),
+        {"lower": lambda x, y: y < 0.003, "upper": lambda x, y: y > 0.003},
+        {
+            "seam": lambda x, y: near(y, 0.003) and x > 0.036 - 1e-9,
+            "slit": lambda x, y: near(y, 0.003) and x < 0.036 + 1e-9,
+        },
+    )
     # Direct shear: two halves of 100 x 25 mm.
     rectangle(
         "shear",

@@ -42,7 +42,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
     key("solver.batch", K::Choice(names::<Batch>), "\"site\"", "Static with a bonded body. site: all overloaded particles break their bonds before equilibrium is solved again. one: only the most overloaded particle does"),
     key("solver.no_equilibrium", K::Choice(names::<NoEquilibrium>), "\"stop\"", "Static only, for a step without equilibrium. stop: the run ends. motion: the scene moves until it has come to rest"),
-    key("solver.max_steps", K::Integer, "10000", "Static only: steps after which the run ends in any case"),
+    key("solver.max_steps", K::Integer, "10000", "Static only: states of equilibrium after which the run ends in any case"),
     key("solver.count", K::Integer, "10", "Modes only: number of natural vibrations, the slowest ones, ≥ 1"),
     key("solver.stop_when", K::Table, "", "Ends the run once a probe has fallen below a fraction of its largest value so far"),
     key("solver.stop_when.probe", K::Text, "required", "Name of the probe"),

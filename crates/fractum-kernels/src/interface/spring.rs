@@ -1,17 +1,21 @@
 use serde::{Deserialize, Serialize};
 
 use super::{InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, tangential};
-use crate::Vec3;
 use crate::contact::slip_to_cone;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
+use crate::{Mat3, Vec3};
 
 /// Looks at friction and strength, which depend on each other.
 const LOOKS: usize = 40;
+/// Halves of the way that slides over asperities, to rounding.
+const HALVES: usize = 54;
 /// Change of them that is rounding.
 const ROUNDING: f64 = 1e-14;
 /// Least ratio of the jump at the end of softening to that at its onset.
 const LEAST_RATIO: f64 = 1.0 + 1e-6;
+/// Step of a difference over the jump and that at the onset.
+const DIFFERENCE: f64 = 1e-7;
 
 /// An interface with a stiffness. A share 1 - D of each point is whole and elastic; the rest is broken, bears pressure, and rubs
 /// (Alfano and Sacco 2006). Where softening begins on an ellipse of the stresses and ends with the energy of the mode, as in Camanho,
@@ -46,17 +50,20 @@ impl SpringInterface {
         let friction = law.friction_at(state.residual);
         let slipped = Vec3::new(0.0, state.slip[0], state.slip[1]);
         let trial = (Vec3::new(0.0, jump.y, jump.z) - slipped) * across;
-        let (size, mut rests) = (trial.norm(), pressure);
-        let mut stick = trial;
-        for _ in 0..LOOKS {
-            stick = slip_to_cone(trial, size, friction * rests);
-            let slip = Vec3::new(0.0, jump.y, jump.z) - stick / across;
-            let next = normal * (law.dilated(slip.norm()) - jump.x).max(0.0);
-            let change = (next - rests).abs();
-            rests = next;
-            if change <= ROUNDING * next {
-                break;
+        let size = trial.norm();
+        // What has slid stands on asperities, which press.
+        let presses = |slip: Vec3| normal * (law.dilated(slip.norm()) - jump.x).max(0.0);
+        let mut rests = presses(slipped);
+        let mut stick = slip_to_cone(trial, size, friction * rests);
+        if law.dilation > 0.0 && size > friction * rests {
+            // Share of the trial that slides: the less is left of it, and the more asperities press, the farther it went.
+            let (mut holds, mut slides) = (0.0, 1.0);
+            for _ in 0..HALVES {
+                let share = 0.5 * (holds + slides);
+                let bears = friction * presses(slipped + trial * (share / across));
+                *(if (1.0 - share) * size > bears { &mut holds } else { &mut slides }) = share;
             }
+            (stick, rests) = (trial * (1.0 - slides), presses(slipped + trial * (slides / across)));
         }
         state.slip = [jump.y - stick.y / across, jump.z - stick.z / across];
         let (whole, broken) = (state.secant, 1.0 - state.secant);
@@ -82,6 +89,32 @@ impl SpringInterface {
         let rubs = if went > 0.0 { (held / went).min(1.0) } else { 1.0 };
         let rubs = if force.contact > 0.0 { rubs } else { 0.0 };
         [closed, (whole + broken * rubs) * across]
+    }
+
+    /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across. By differences along the normal and
+    /// along the slip, away from zero and thus towards further softening; its symmetric part, since friction makes it one-sided.
+    ///
+    /// - `state`: the history that [`SpringInterface::load`] takes at `jump`
+    /// - `secant`: [`SpringInterface::secant`] after it
+    #[inline]
+    pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, secant: [f64; 2]) -> Mat3 {
+        let size = tangential(jump);
+        let along = if size > 0.0 { Vec3::new(0.0, jump.y, jump.z) / size } else { Vec3::y() };
+        let across = Vec3::x().cross(&along);
+        let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
+        let here = at(*jump);
+        let onset = self.law.tensile_strength / self.stiffness[0] + self.law.cohesion / self.stiffness[1];
+        let step = DIFFERENCE * (jump.norm() + onset).max(f64::MIN_POSITIVE.sqrt());
+        let normal = Vec3::x() * if jump.x < 0.0 { -1.0 } else { 1.0 };
+        let by_normal = (at(jump + normal * step) - here) * (normal.x / step);
+        let by_slip = (at(jump + along * step) - here) / step;
+        let both = 0.5 * (by_normal.dot(&along) + by_slip.x);
+        let crossed = along * Vec3::x().transpose() * both;
+        Mat3::from_diagonal(&Vec3::new(by_normal.x, 0.0, 0.0))
+            + along * along.transpose() * by_slip.dot(&along)
+            + across * across.transpose() * secant[1]
+            + crossed
+            + crossed.transpose()
     }
 
     /// Lets the strength go down where the jump asks for it.

@@ -132,6 +132,43 @@ pub(crate) fn spring_proportional(draw: &mut Draw) -> Held {
     hold((spent / energy - 1.0).abs() < 1e-6, || format!("spends {spent} of {energy} J/m², share {share}"))
 }
 
+/// The tangent along a straight way: elastic before the onset, the slope of the softening beyond it, and the way back to zero.
+pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
+    let law = InterfaceLaw { dilation: 0.0, ..law(draw) };
+    let interface = with_stiffness(draw, law);
+    let along = direction(draw, law.last());
+    let [normal, across] = interface.stiffness;
+    let [opening, sliding] = [normal * along.x * along.x, across * flat(&along).powi(2)];
+    let elastic = opening + sliding;
+    let onset = (normal * along.x / law.tensile_strength).hypot(across * flat(&along) / law.cohesion).recip();
+    // Energy over that at the onset.
+    let ductility = law.energy(sliding / elastic) / (0.5 * elastic * onset * onset);
+    let share = draw.between(0.05, 0.95);
+    let state = law.intact(false);
+    let slope = |way: f64, state: &InterfaceState| {
+        let (jump, mut after) = (along * way, *state);
+        let force = interface.load(jump, &mut after);
+        let secant = interface.secant(&jump, &force, &after);
+        (along.dot(&(interface.tangent(&jump, state, secant) * along)), after)
+    };
+    let (before, _) = slope(share * onset, &state);
+    hold((before / elastic - 1.0).abs() < 1e-5, || format!("{before} for {elastic} Pa/m before the onset"))?;
+    let (way, expected) = match law.softening {
+        InterfaceSoftening::Linear => (1.0 + share * (ductility - 1.0), -1.0 / (ductility - 1.0)),
+        InterfaceSoftening::Exponential => {
+            let scale = 0.5 * (ductility - 1.0);
+            (1.0 + share * scale, -(-share).exp() / scale)
+        }
+    };
+    let (found, after) = slope(way * onset, &state);
+    hold((found / elastic - expected).abs() < 1e-4 * expected.abs(), || {
+        format!("{found} for {} Pa/m, {law:?}", expected * elastic)
+    })?;
+    let (back, _) = slope(0.5 * way * onset, &after);
+    let secant = after.secant * elastic;
+    hold((back / secant - 1.0).abs() < 1e-5, || format!("{back} for {secant} Pa/m on the way back"))
+}
+
 /// A way that opens, closes and slides for- and backwards.
 fn any_way(draw: &mut Draw, scale: [f64; 2], steps: u32) -> Vec<Vec3> {
     let knots: Vec<Vec3> = (0..12)

@@ -76,6 +76,10 @@ struct Point {
     area: f64,
     /// Rows: normal, two directions across.
     frame: Mat3,
+    /// Faces it belongs to that turn with their bodies, and what their turning so far has added to the jump when it was first looked at, along the rows
+    /// of its frame [m].
+    turned: u16,
+    offset: Vec3,
     state: InterfaceState,
     /// What its state becomes, as far as it is known.
     tried: InterfaceState,
@@ -85,6 +89,13 @@ struct Point {
     pull: Vec3,
     /// The same by its parts.
     force: InterfaceForce,
+}
+
+impl Point {
+    /// A jump along the rows of its frame.
+    fn local(&self, jump: Vec3) -> Vec3 {
+        self.frame * jump - self.offset
+    }
 }
 
 /// What a step has taken [J].
@@ -181,6 +192,8 @@ impl Interfaces {
                     faces: of_faces,
                     area,
                     frame,
+                    turned: 0,
+                    offset: Vec3::zeros(),
                     state,
                     tried: state,
                     jump: Vec3::zeros(),
@@ -248,18 +261,27 @@ impl Interfaces {
     /// Takes the frames of middle surfaces where bodies turn.
     fn turn(&mut self, solid: &Solid) {
         let turns = |body: u32| solid.body(body as usize).kinematics == Kinematics::Corotational;
-        if !self.faces.iter().any(|face| face.elements.iter().any(|&(body, _)| turns(body))) {
+        let moves = |face: &InterfaceFace| face.elements.iter().any(|&(body, _)| turns(body));
+        if !self.faces.iter().any(moves) {
             return;
         }
         let Interfaces { clusters, faces, .. } = self;
         for point in clusters.iter_mut().flat_map(|cluster| &mut cluster.points) {
-            point.frame = mean_frame(&point.faces, |face| {
+            let frame = mean_frame(&point.faces, |face| {
                 let face = &faces[face as usize];
-                let moves = face.elements.iter().any(|&(body, _)| turns(body));
-                let place =
-                    |node: u32| if moves { solid.position(node as usize) } else { solid.reference[node as usize] };
+                let place = |node: u32| {
+                    if moves(face) { solid.position(node as usize) } else { solid.reference[node as usize] }
+                };
                 face.frame(place).0
             });
+            let turned = point.faces.iter().filter(|(face, _)| moves(&faces[*face as usize])).count() as u16;
+            if turned != point.turned {
+                // A body that begins to turn leaves the jump as it was: what has slid on a face that stood askew has not opened it.
+                let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
+                point.offset += (frame - point.frame) * (b - a);
+                point.turned = turned;
+            }
+            point.frame = frame;
         }
     }
 

@@ -66,7 +66,7 @@ impl Cluster {
             match stiffness {
                 Some(stiffness) => {
                     let interface = SpringInterface { law: *law, stiffness: *stiffness };
-                    point.force = interface.load(point.frame * jump, &mut point.state);
+                    point.force = interface.load(point.local(jump), &mut point.state);
                     point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
                     if step.elapsed > 0.0 {
                         taken.half(point, jump, closing(law, &Some(*stiffness)));
@@ -185,5 +185,5 @@ fn free_jump(point: &Point, nodes: &[u32], forces: &[Vec3], solid: &Solid, step:
         // Supports that prescribe this motion leave nothing to find.
         1.0 / (unit * if own > 1e-9 * least { all } else { least })
     });
-    FreeJump { now: point.frame * jump, ahead: point.frame * ahead, inertia }
+    FreeJump { now: point.local(jump), ahead: point.local(ahead), inertia }
 }

@@ -20,6 +20,8 @@ pub struct InterfacesState {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct PointState {
     area: f64,
+    turned: u16,
+    offset: Vec3,
     state: InterfaceState,
     jump: Vec3,
     pull: Vec3,
@@ -77,7 +79,7 @@ impl Interfaces {
             };
             let point = &self.clusters[*cluster as usize].points[*point as usize];
             let own = point.faces.iter().find(|own| own.0 as usize == face).map_or(1.0, |own| own.1.signum());
-            let local = point.frame * point.jump;
+            let local = point.local(point.jump);
             let traction = point.force.traction();
             mean.opening += share * local.x;
             mean.slip += point.frame.tr_mul(&Vec3::new(0.0, local.y, local.z)) * (share * own);
@@ -124,9 +126,10 @@ impl Interfaces {
     pub(crate) fn state(&self) -> InterfacesState {
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points);
         let of = |point: &Point| {
-            let Point { area, state, jump, pull, force, .. } = point;
+            let Point { area, turned, offset, state, jump, pull, force, .. } = point;
             let InterfaceForce { cohesive, friction, contact, stored } = *force;
-            PointState { area: *area, state: *state, jump: *jump, pull: *pull, cohesive, friction, contact, stored }
+            let (area, turned, offset, state) = (*area, *turned, *offset, *state);
+            PointState { area, turned, offset, state, jump: *jump, pull: *pull, cohesive, friction, contact, stored }
         };
         InterfacesState { areas: self.areas.clone(), points: points.map(of).collect() }
     }
@@ -147,8 +150,9 @@ impl Interfaces {
         }
         let own = self.clusters.iter_mut().flat_map(|cluster| &mut cluster.points);
         for (point, saved) in own.zip(points) {
-            let PointState { area, state, jump, pull, cohesive, friction, contact, stored } = saved;
-            (point.area, point.state, point.tried, point.jump, point.pull) = (area, state, state, jump, pull);
+            let PointState { area, turned, offset, state, jump, pull, cohesive, friction, contact, stored } = saved;
+            (point.area, point.turned, point.offset) = (area, turned, offset);
+            (point.state, point.tried, point.jump, point.pull) = (state, state, jump, pull);
             point.force = InterfaceForce { cohesive, friction, contact, stored };
         }
         self.turn(solid);

@@ -1,4 +1,4 @@
-//! Interfaces at equilibrium: those with a stiffness are springs between two nodes, linear about the last iterate by their secant.
+//! Interfaces at equilibrium: those with a stiffness are springs between two nodes, linear about the last iterate by their tangent or secant.
 
 use fractum_fem::Solid;
 use fractum_kernels::interface::SpringInterface;
@@ -21,22 +21,27 @@ pub(crate) struct InterfaceSpring {
 
 impl Interfaces {
     /// Springs under a displacement field, with the histories of the last equilibrium.
-    pub(crate) fn springs(&self, field: &[Vec3]) -> impl Iterator<Item = InterfaceSpring> {
+    ///
+    /// - `share`: part of the secant in their stiffness, the rest of which is their tangent
+    pub(crate) fn springs(&self, field: &[Vec3], share: f64) -> impl Iterator<Item = InterfaceSpring> {
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0);
         points.filter_map(move |point| {
             let InterfaceKind { law, stiffness, .. } = &self.kinds[point.kind as usize];
             let interface = SpringInterface { law: *law, stiffness: (*stiffness)? };
             let [a, b] = point.pair.map(|node| field[node as usize]);
-            let jump = point.frame * (b - a);
+            let jump = point.local(b - a);
             let mut state = point.state;
             let force = interface.load(jump, &mut state);
-            let [along, across] = interface.secant(&jump, &force, &state);
-            let secant = Mat3::from_diagonal(&Vec3::new(along, across, across)) * point.area;
+            let secant @ [along, across] = interface.secant(&jump, &force, &state);
+            let mut stiffness = Mat3::from_diagonal(&Vec3::new(along, across, across));
+            if share < 1.0 {
+                stiffness = stiffness * share + interface.tangent(&jump, &point.state, secant) * (1.0 - share);
+            }
             Some(InterfaceSpring {
                 pair: point.pair,
                 normal: point.frame.row(0).transpose(),
                 force: -point.frame.tr_mul(&force.traction()) * point.area,
-                stiffness: point.frame.transpose() * secant * point.frame,
+                stiffness: point.frame.transpose() * stiffness * point.frame * point.area,
             })
         })
     }
@@ -50,7 +55,7 @@ impl Interfaces {
             let interface = SpringInterface { law: *law, stiffness: *stiffness };
             let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
             taken.half(point, b - a, Closing::Stored);
-            point.force = interface.load(point.frame * (b - a), &mut point.state);
+            point.force = interface.load(point.local(b - a), &mut point.state);
             point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
             taken.half(point, b - a, Closing::Stored);
             point.jump = b - a;

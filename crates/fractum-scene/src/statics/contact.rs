@@ -174,7 +174,7 @@ pub(super) fn springs_at_rest(scene: &Scene) -> Vec<Spring> {
 /// - `ahead`: duration from which the pace of the shapes is taken [s]
 /// - `slipping`: part of the secant of friction by which what slips is held along its way, where its force does not change: all of
 ///   it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
-///   only friction holds without a stiffness
+///   only friction holds without a stiffness; likewise the part of the secant of interfaces that soften
 /// - `also`: what does not touch, and has a spring
 pub(super) fn contact_springs(
     scene: &Scene,
@@ -192,7 +192,7 @@ pub(super) fn contact_springs(
         Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
-    springs.extend(scene.interfaces().springs(field).map(|spring| {
+    springs.extend(scene.interfaces().springs(field, slipping).map(|spring| {
         let InterfaceSpring { pair: [partner, node], normal, force, stiffness } = spring;
         Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate: Vec3::zeros() }
     }));

@@ -2,6 +2,7 @@
 
 use fractum_fem::{DamagePoint, Seen, Solid};
 use fractum_math::Vec3;
+use fractum_sparse::SparseError;
 
 use super::contact::{Also, Spring, bring_back, contact_springs, forget_brought_back, has_contacts};
 use super::equilibrium::{Boundary, boundary_at, check_loose, come_apart, unbalance};
@@ -61,7 +62,10 @@ impl StaticSolver {
             }
             self.iterations += 1;
             let first = iteration == 1 && brought_back == 0;
-            let slipping = SLIPPING[usize::from(iteration > SLIPPING_FREELY[usize::from(monotone)])];
+            // Conjugate gradients need a definite matrix, and tell by no error that they had none.
+            let freely = iteration <= SLIPPING_FREELY[usize::from(monotone)]
+                && (scene.interfaces().is_empty() || self.system.factor_entries().is_some());
+            let slipping = SLIPPING[usize::from(!freely)];
             self.find_contacts(scene, [present, found_at], longest, slipping, first)?;
             let ahead = if tau.abs() > 1e-9 * self.settings.end { tau } else { longest };
             let here = boundary_at(scene, present, present);
@@ -164,11 +168,18 @@ impl StaticSolver {
         self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, slipping, also);
         self.couple(scene)?;
         let is_linear = scene.shape_contacts.is_empty() && scene.interfaces().is_empty();
-        if !(self.elastic && self.prepared && is_linear) {
-            let prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
-            prepared.map_err(|e| come_apart(scene, e))?;
-            self.prepared = true;
+        if self.elastic && self.prepared && is_linear {
+            return Ok(());
         }
+        let mut prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
+        // Where what softens leaves no stable state near by, its secant still leads to one.
+        if matches!(prepared, Err(SparseError::Indefinite { .. })) && !scene.interfaces().is_empty() && slipping < 1.0 {
+            let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
+            self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, 1.0, also);
+            prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
+        }
+        prepared.map_err(|error| come_apart(scene, error))?;
+        self.prepared = true;
         Ok(())
     }
 

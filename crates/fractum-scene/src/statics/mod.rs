@@ -89,6 +89,8 @@ pub struct StaticSolver {
     applied: AppliedForces,
     /// Largest forces of a state of equilibrium so far [N].
     largest_forces: f64,
+    /// States of equilibrium found.
+    steps: u64,
     iterations: usize,
 }
 
@@ -146,6 +148,7 @@ pub struct StaticState {
     touching: Vec<[u32; 2]>,
     applied: AppliedForces,
     largest_forces: f64,
+    steps: u64,
     iterations: u64,
     factorisations: u64,
     solutions: u64,
@@ -177,6 +180,7 @@ impl StaticSolver {
             anderson: Anderson::default(),
             applied: AppliedForces::default(),
             largest_forces: 0.0,
+            steps: 0,
             iterations: 0,
         })
     }
@@ -206,6 +210,7 @@ impl StaticSolver {
             touching: self.touching.pairs.clone(),
             applied: self.applied.clone(),
             largest_forces: self.largest_forces,
+            steps: self.steps,
             iterations: iterations as u64,
             factorisations: linear.factorisations as u64,
             solutions: linear.solutions as u64,
@@ -218,7 +223,7 @@ impl StaticSolver {
         self.pace = Pace { growth: state.growth, part: state.part, trend: state.trend };
         self.applied = state.applied;
         self.touching.pairs = state.touching;
-        self.largest_forces = state.largest_forces;
+        (self.largest_forces, self.steps) = (state.largest_forces, state.steps);
         self.iterations = state.iterations as usize;
         *self.system.work() = LinearWork {
             factorisations: state.factorisations as usize,
@@ -245,7 +250,12 @@ impl StaticSolver {
             Control::Opening(opening) => opening.of(&scene.solid.displacement) >= opening.end * (1.0 - 1e-12),
             Control::Time | Control::Path => false,
         };
-        open || scene.clock.time >= self.settings.end * (1.0 - 1e-12) || scene.clock.step >= self.settings.most_steps
+        open || scene.clock.time >= self.settings.end * (1.0 - 1e-12) || self.has_used_up_its_steps()
+    }
+
+    /// Whether it has found as many states of equilibrium as it may; steps of motion between them do not count.
+    pub fn has_used_up_its_steps(&self) -> bool {
+        self.steps >= self.settings.most_steps
     }
 
     /// Finds the next state of equilibrium.
@@ -289,6 +299,7 @@ impl StaticSolver {
                 }
                 let before = scene.solid.displacement.clone();
                 scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
+                self.steps += 1;
                 return accept_equilibrium(scene, &self.response.start, time, &mut self.applied);
             }
             if at_onset && held {

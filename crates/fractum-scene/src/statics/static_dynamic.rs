@@ -60,6 +60,8 @@ impl Scene {
         let critical = 4.0 * std::f64::consts::PI / period;
         let damping = damping.unwrap_or(LocalDamping { local: 0.0, mass_rate: DAMPING * critical });
         self.settings.damping = damping;
+        // Equilibrium knows small strains alone, and so does the way from one to the next.
+        motion::keep_small_strains(&mut self.solid);
         move_from_rest(self, false);
         DynamicPhase {
             begin: time,

@@ -49,7 +49,10 @@ impl Simulation {
         let (time, end) = (self.time(), self.case.solver.end);
         match time >= end * (1.0 - 1e-9) {
             true => format!("{} is the end of the run", self.instant(end)),
-            false => format!("last step at {}, before its end at {}", self.instant(time), self.instant(end)),
+            false => {
+                let why = if self.solver.has_used_up_its_steps() { ": solver.max_steps allows no more" } else { "" };
+                format!("last step at {}, before its end at {}{why}", self.instant(time), self.instant(end))
+            }
         }
     }
 

@@ -78,6 +78,10 @@ impl EquilibriumRun {
         matches!(self.phase, Phase::Moving(_))
     }
 
+    pub(super) fn has_used_up_its_steps(&self) -> bool {
+        self.solver.has_used_up_its_steps()
+    }
+
     pub(super) fn is_finished(&self, scene: &Scene) -> bool {
         if self.moves() { scene.is_finished() } else { self.solver.is_finished(scene) }
     }

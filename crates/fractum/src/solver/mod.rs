@@ -145,6 +145,11 @@ impl Solver {
         }
     }
 
+    /// Whether `solver.max_steps` allows no further state of equilibrium.
+    pub(crate) fn has_used_up_its_steps(&self) -> bool {
+        matches!(self, Solver::Static(run) if run.has_used_up_its_steps())
+    }
+
     /// Whether the scene moves all the time.
     pub(crate) fn is_explicit(&self) -> bool {
         matches!(self, Solver::Explicit)
