@@ -75,11 +75,9 @@ fn supports_that_hold_nodes_of_both_sides_bring_no_energy() {
 fn what_does_not_enter_interfaces_is_refused() {
     let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
     let case = PEELED.replace("NU", "0.3").replace("SPEED", "0.5 m/s");
-    let solver = |text: &str| case.replace("end = \"1 ms\"\n", &format!("end = \"1 ms\"\n{text}"));
     let rest = |text: &str| case.replace("[solver]\n", &format!("{text}[solver]\n"));
     let pressed = "[[loads]]\nwhere = \"y < 0.01 mm\"\npressure = \"1 MPa\"\nin_cracks = true\n";
     for (text, words) in [
-        (solver("kind = \"static\"\n"), "give normal_stiffness"),
         (case.replace("end = \"1 ms\"", "kind = \"modes\""), "with solver.kind = \"modes\""),
         (rest("[in_situ]\nstress = { xx = \"-1 MPa\" }\n"), "with [in_situ]"),
         (rest(pressed), "beside loads[].in_cracks"),
@@ -122,5 +120,21 @@ fn what_an_interface_joins_leaves_the_domain_as_one() {
         let left = energy("left") / whole;
         assert!((left - f64::from(u8::from(gone))).abs() < 1e-9, "{end}: {left} of all has left");
         assert!(energy("residual_max_relative") < 1e-9, "{}", summary["energy"]);
+    }
+}
+
+#[test]
+fn stiff_interfaces_rest_on_stiffness_enough() {
+    // The cases of the gallery with their stiffness, and without.
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    for name in ["dcb", "shear"] {
+        let case = std::fs::read_to_string(format!("{root}/cases/interfaces/{name}.toml")).unwrap();
+        let mesh = std::fs::read(format!("{root}/meshes/interfaces/{name}.msh")).unwrap();
+        let stiff: String =
+            case.lines().filter(|line| !line.contains("_stiffness =")).flat_map(|line| [line, "\n"]).collect();
+        let stiff = stiff.replace(&format!("../../meshes/interfaces/{name}.msh"), "bar.msh");
+        let ended = Workplace::with_mesh(&stiff, &mesh).fractum(&["run", "case.toml", "-o", "out"]);
+        assert_eq!(ended.code, Some(0), "{name}: {}", ended.stderr);
+        assert!(ended.stdout.contains("as expected") && !ended.stdout.contains("NOT as"), "{name}: {}", ended.stdout);
     }
 }

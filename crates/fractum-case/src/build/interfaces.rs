@@ -6,7 +6,7 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scene};
+use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
 use super::Context;
 use super::bodies::{Numbering, Part};
@@ -15,6 +15,10 @@ use crate::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Elements in a process zone below which it is not resolved.
 const IN_ZONE: f64 = 3.0;
+/// How much stiffer than an element an interface is at rest that is to be stiff: it gives way by a hundredth of one.
+const FIRM: f64 = 100.0;
+/// Share of the fracture energy that an interface may store up to its strength.
+const MOST_STORED: f64 = 0.95;
 
 /// Cuts a mesh along the interfaces of a case.
 ///
@@ -76,19 +80,13 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
         return scene;
     }
     let case = context.case;
-    let kinds = case.interfaces.iter().map(|interface| InterfaceKind {
-        name: interface.name.clone(),
-        law: interface.law,
-        stiffness: interface.stiffness,
-    });
-    let kinds: Vec<InterfaceKind> = kinds.collect();
     let owner = |element: u32| {
         let own =
             |(body, part): (usize, &Part)| Some((body as u32, part.elements.binary_search(&element).ok()? as u32));
         parts.iter().enumerate().find_map(own)
     };
     let node = |n: u32| numbering.scene_node[n as usize];
-    let (mut faces, mut outside) = (Vec::new(), vec![0usize; kinds.len()]);
+    let (mut faces, mut outside) = (Vec::new(), vec![0usize; case.interfaces.len()]);
     for face in &context.mesh.cuts {
         let [first, second] = face.elements.map(owner);
         match first.zip(second) {
@@ -104,8 +102,39 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
         let found = format!(": {count} of its faces have an element beside them that belongs to no solid body");
         context.error(&interface.place, found, "faces inside of solid bodies");
     }
+    let kinds = (0u32..).zip(&case.interfaces).map(|(kind, interface)| InterfaceKind {
+        name: interface.name.clone(),
+        law: interface.law,
+        stiffness: interface.stiffness.or_else(|| comes_to_rest(case).then(|| firm(&scene.solid, &faces, kind))),
+    });
+    let kinds: Vec<InterfaceKind> = kinds.collect();
+    for (kind, interface) in kinds.iter().zip(&case.interfaces).filter(|(_, given)| given.stiffness.is_none()) {
+        let Some(stiffness) = kind.stiffness else { continue };
+        if (SpringInterface { law: kind.law, stiffness }).least_ductility() * MOST_STORED < 1.0 {
+            let found = ": its faces are so large that softening has no equilibrium";
+            context.error(&interface.place, found, "smaller elements along it, or a normal_stiffness");
+        }
+    }
     let interfaces = Interfaces::new(&scene.solid, kinds, faces);
     scene.with_interfaces(interfaces)
+}
+
+/// Whether some stage of a case is at rest.
+fn comes_to_rest(case: &Case) -> bool {
+    std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Static)
+}
+
+/// Stiffness of an interface at rest that is to be stiff until its strength is met [Pa/m]: with [`FIRM`] times that of an element of the stiffer side over
+/// the size of its smallest face.
+fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32) -> [f64; 2] {
+    let of = |face: &InterfaceFace| {
+        let [a, b, c] = face.sides[0].map(|node| solid.reference[node as usize]);
+        let size = if face.corners() == 2 { (b - a).norm() } else { (b - a).cross(&(c - a)).norm().sqrt() };
+        let modulus = |(body, _): (u32, u32)| solid.body(body as usize).elastic.young_modulus;
+        modulus(face.elements[0]).max(modulus(face.elements[1])) / size
+    };
+    let stiffest = faces.iter().filter(|face| face.kind == kind).map(of).fold(0.0, f64::max);
+    [FIRM * stiffest; 2]
 }
 
 /// What does not go together with interfaces yet.
@@ -113,22 +142,10 @@ pub(super) fn check(context: &mut Context<'_>) {
     let case = context.case;
     let Some(first) = case.interfaces.first() else { return };
     let place = first.place.clone();
-    let stiff = case.interfaces.iter().find(|interface| interface.stiffness.is_none());
     match case.solver.kind {
         SolverKind::Modes => context.error(&place, "with solver.kind = \"modes\"", "solids without interfaces"),
         SolverKind::Heat => {
             context.error(&place, "with solver.kind = \"heat\"", "solids without interfaces: heat alone moves nothing")
-        }
-        SolverKind::Static => {
-            if let Some(stiff) = stiff {
-                let note = Diagnostic::error(
-                    &stiff.place,
-                    "is stiff until its strength is met, with solver.kind = \"static\"",
-                );
-                let remedy =
-                    "give normal_stiffness, such as 10 to 100 times Young's modulus over the size of the elements";
-                context.diagnostics.push(note.expected("a stiffness").remedy(remedy));
-            }
         }
         _ => {}
     }
@@ -176,7 +193,7 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
                 ": it rubs in motion, and the case has no damping",
             );
             doubts.push(note.remedy(
-                "where it slides steadily its vibrations make the mean shear force too small: set [damping], or load it at rest with a stiffness",
+                "where it slides steadily its vibrations make the mean shear force too small: set [damping], or load it at rest",
             ));
         }
         let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };

@@ -92,7 +92,7 @@ impl SpringInterface {
     }
 
     /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across. By differences along the normal and
-    /// along the slip, away from zero and thus towards further softening; its symmetric part, since friction makes it one-sided.
+    /// along the slip, away from zero and thus towards further softening; the symmetric part of it, and of a closed face the diagonal alone.
     ///
     /// - `state`: the history that [`SpringInterface::load`] takes at `jump`
     /// - `secant`: [`SpringInterface::secant`] after it
@@ -108,7 +108,8 @@ impl SpringInterface {
         let normal = Vec3::x() * if jump.x < 0.0 { -1.0 } else { 1.0 };
         let by_normal = (at(jump + normal * step) - here) * (normal.x / step);
         let by_slip = (at(jump + along * step) - here) / step;
-        let both = 0.5 * (by_normal.dot(&along) + by_slip.x);
+        // Friction rises with the pressure and presses back with nothing: half of that each way would leave no stable state.
+        let both = if jump.x < 0.0 { 0.0 } else { 0.5 * (by_normal.dot(&along) + by_slip.x) };
         let crossed = along * Vec3::x().transpose() * both;
         Mat3::from_diagonal(&Vec3::new(by_normal.x, 0.0, 0.0))
             + along * along.transpose() * by_slip.dot(&along)

@@ -43,26 +43,28 @@ pub(super) fn boundary_at(scene: &mut Scene, present: f64, time: f64) -> Boundar
 }
 
 /// Unbalanced force on the free unknowns, and all forces that it is held against [N].
+///
+/// - `force`: gets what is out of balance at each node, 0 where it is held
 pub(super) fn unbalance(
     scene: &Scene,
     damage: &CellDamage,
     field: &[Vec3],
     load: &[Vec3],
     force: &mut [Vec3],
-) -> (f64, f64) {
+) -> [f64; 2] {
     scene.solid.secant_force(damage, field, force);
     let held = scene.supports.held();
     let (mut missing, mut scale) = (0.0, 0.0);
-    for (i, (inner, outer)) in force.iter().zip(load).enumerate() {
+    for (i, (force, outer)) in force.iter_mut().zip(load).enumerate() {
         let bits = held.get(i).copied().unwrap_or(0);
+        let inner = *force;
         for axis in 0..3 {
             scale += inner[axis] * inner[axis] + outer[axis] * outer[axis];
-            if bits & (1 << axis) == 0 {
-                missing += (outer[axis] - inner[axis]).powi(2);
-            }
+            force[axis] = if bits & (1 << axis) == 0 { outer[axis] - inner[axis] } else { 0.0 };
+            missing += force[axis].powi(2);
         }
     }
-    (missing.sqrt(), scale.sqrt())
+    [missing.sqrt(), scale.sqrt()]
 }
 
 /// Takes over displacements in equilibrium at `time`: history, reactions, ledger, removal.

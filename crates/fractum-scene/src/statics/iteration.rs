@@ -18,6 +18,9 @@ const LEAST_SHARE: f64 = 1e-3;
 const SLIPPING: [f64; 2] = [0.01, 1.0];
 /// Iterations with the first of them, where damage may fall from one to the next (all of them), and where it only grows.
 const SLIPPING_FREELY: [usize; 2] = [ITERATIONS[0], 60];
+/// Looks along a way for the place at which the forces do no work any more, and the part of their work that may be left.
+const LOOKS: usize = 6;
+const LEFT: f64 = 0.5;
 /// Equilibria of a step at which what sticks is brought back: some four suffice, ten in stiff elements.
 const MOST_BROUGHT_BACK: usize = 16;
 
@@ -74,21 +77,18 @@ impl StaticSolver {
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
             tau = found;
             self.advance(&scene.solid, points, tau, monotone);
-            let mut exact = boundary_at(scene, present, present + tau);
+            let exact = boundary_at(scene, present, present + tau);
+            let since = present + tau - found_at;
             if has_contacts(scene) {
-                let since = present + tau - found_at;
-                found_at = present + tau;
                 self.touching.keep(&self.response.start, since);
-                self.touching.place.clone_from(&self.response.start);
-                scene.debris.meet(&scene.solid, &self.touching.place);
-                for spring in
-                    contact_springs(scene, &self.touching.place, [present, found_at], longest, 1.0, Also::Nothing)
-                {
-                    spring.push(spring.force, &mut exact.force);
-                }
             }
-            let (missing, forces) =
-                unbalance(scene, &self.trial, &self.response.start, &exact.force, &mut self.response.right);
+            let from = std::mem::take(&mut self.touching.place);
+            let mut found = self.look(scene, &exact, [present, tau], longest);
+            if points.is_empty() && since == 0.0 && !scene.interfaces().is_empty() {
+                found = self.go_to_least_energy(scene, &exact, [present, tau], longest, &from, found);
+            }
+            let [missing, forces] = found;
+            found_at = present + tau;
             if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 slowest = slowest.max(iteration);
                 if bring_back(scene, &self.response.start, [present, present + tau], &mut self.touching.stretch) {
@@ -229,6 +229,69 @@ impl StaticSolver {
             }
         }
         solid.trial_damage(seen, &mut self.trial);
+    }
+
+    /// What is out of balance at the displacements of the response, and all forces there [N]; the right-hand side gets the unbalanced forces.
+    ///
+    /// - `exact`: loads at the end of the step; `times`: the last equilibrium, and from it to there
+    fn look(&mut self, scene: &mut Scene, exact: &Boundary, [present, tau]: [f64; 2], longest: f64) -> [f64; 2] {
+        let Response { start, right, .. } = &mut self.response;
+        let mut load = exact.force.clone();
+        self.touching.place.clone_from(start);
+        if has_contacts(scene) {
+            scene.debris.meet(&scene.solid, start);
+            for spring in contact_springs(scene, start, [present, present + tau], longest, 1.0, Also::Nothing) {
+                spring.push(spring.force, &mut load);
+            }
+        }
+        unbalance(scene, &self.trial, start, &load, right)
+    }
+
+    /// Goes that part of the way to the displacements of the response on which the forces do no work any more: faces that open and close by turns
+    /// come to rest so (Crisfield 1991, 9.2).
+    ///
+    /// - `from`: the displacements before; `found`: what is out of balance at the end of the way, and the forces there
+    fn go_to_least_energy(
+        &mut self,
+        scene: &mut Scene,
+        exact: &Boundary,
+        times: [f64; 2],
+        longest: f64,
+        from: &[Vec3],
+        found: [f64; 2],
+    ) -> [f64; 2] {
+        let way: Vec<Vec3> = self.response.start.iter().zip(from).map(|(to, from)| to - from).collect();
+        let work = |solver: &Self| -> f64 { solver.response.right.iter().zip(&way).map(|(f, way)| f.dot(way)).sum() };
+        let at_end = work(self);
+        if at_end >= 0.0 {
+            return found;
+        }
+        self.go(from, &way, 0.0);
+        self.look(scene, exact, times, longest);
+        let at_start = work(self);
+        let (mut low, mut high, mut part) = ((0.0, at_start), (1.0, at_end), 1.0);
+        let mut found = found;
+        let mut here = at_end;
+        for _ in 0..LOOKS {
+            if here.abs() <= LEFT * at_start || at_start <= 0.0 {
+                break;
+            }
+            let root = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            part = root.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0));
+            self.go(from, &way, part);
+            found = self.look(scene, exact, times, longest);
+            here = work(self);
+            *(if here > 0.0 { &mut low } else { &mut high }) = (part, here);
+        }
+        self.go(from, &way, part);
+        if part == 1.0 { self.look(scene, exact, times, longest) } else { found }
+    }
+
+    /// Sets the displacements of the response to those of a part of a way.
+    fn go(&mut self, from: &[Vec3], way: &[Vec3], part: f64) {
+        for ((place, from), way) in self.response.start.iter_mut().zip(from).zip(way) {
+            *place = from + way * part;
+        }
     }
 
     /// Gives the system places for all pairs of nodes that touch.
