@@ -429,3 +429,53 @@ fn interfaces_have_the_same_bits_on_any_threads_and_after_a_resume() {
         }
     }
 }
+
+/// A pulse through a spring between two halves: σ_t' = 2 K/Z (σ_i - σ_t) with the impedance Z of the bar (Schoenberg 1980), at three stiffnesses.
+#[test]
+fn a_pulse_passes_a_spring_by_its_stiffness() {
+    let (speed, duration, end) = ((CONCRETE.young_modulus / CONCRETE.density).sqrt(), 8e-5, 3.2e-4);
+    let step = 2e-7;
+    let passed = |interface: Option<(InterfaceLaw, Option<[f64; 2]>)>| -> Vec<f64> {
+        let bar = Bar {
+            cells: [200, 2],
+            size: 0.005,
+            poisson_ratio: 0.0,
+            step: Some(step),
+            ..Bar::new(ElementKind::T3, interface)
+        };
+        let mut behind = 0;
+        let (mut scene, _) = bar.scene(end, |mesh| {
+            let nearest = |n: &usize| (mesh.nodes[*n] - Vec3::new(0.6, 0.005, 0.0)).norm();
+            behind = (0..mesh.nodes.len()).min_by(|a, b| nearest(a).total_cmp(&nearest(b))).unwrap();
+            let pushed = Arc::new(move |t: f64, _: &Vec3| {
+                let phase = std::f64::consts::TAU * (t / duration).min(1.0);
+                1e-7 * (phase - phase.sin())
+            });
+            vec![Support::new("left", Bar::at(mesh, |p| p.x < 1e-9), 0, Motion::Displacement(pushed))]
+        });
+        let mut velocity = Vec::new();
+        while !scene.is_finished() {
+            scene.step(false).unwrap();
+            velocity.push(scene.solid.velocity[behind].x);
+        }
+        velocity
+    };
+    let incident = passed(None);
+    let impedance = CONCRETE.density * speed;
+    for times in [0.5, 2.0, 8.0] {
+        let stiffness = times * impedance / duration;
+        let strong =
+            InterfaceLaw { tensile_strength: 1e9, cohesion: 1e9, opening_energy: 1e9, sliding_energy: 1e9, ..LAW };
+        let found = passed(Some((strong, Some([stiffness; 2]))));
+        let rate = 2.0 * stiffness / impedance * step;
+        let (mut expected, mut worst, mut before) = (0.0, 0.0f64, 0.0);
+        for (is, of) in found.iter().zip(&incident) {
+            // The middle of a step for what comes and for what has passed.
+            expected = (expected * (1.0 - 0.5 * rate) + 0.5 * rate * (of + before)) / (1.0 + 0.5 * rate);
+            before = *of;
+            worst = worst.max((is - expected).abs());
+        }
+        let largest = incident.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        assert!(worst < 0.01 * largest, "{times}: off by {} of the pulse", worst / largest);
+    }
+}

@@ -21,14 +21,23 @@ pub(crate) const DRAWS: u64 = 300;
 /// Fails unless every law has its properties in all draws; names the row and the first draw that it fails. `FRACTUM_LAWS_SEED` (a number) draws others.
 pub(crate) fn try_all(laws: &[Row]) {
     let seed: u64 = std::env::var("FRACTUM_LAWS_SEED").map_or(0, |seed| seed.parse().expect("a number"));
-    let mut wrong = Vec::new();
-    for (number, row) in laws.iter().enumerate() {
+    let wrong_of = |(number, row): (usize, &Row)| {
         let fails = |draw: &u64| (row.holds)(&mut Draw::new(number as u64 + 1000 * seed, *draw)).err();
         let failed: Vec<(u64, String)> = (0..DRAWS).filter_map(|draw| Some((draw, fails(&draw)?))).collect();
-        if let Some((draw, what)) = failed.first() {
-            wrong.push(format!("{}: {} of {DRAWS} draws, the first is {draw}: {what}", row.law, failed.len()));
-        }
-    }
+        let (draw, what) = failed.first()?;
+        Some(format!("{}: {} of {DRAWS} draws, the first is {draw}: {what}", row.law, failed.len()))
+    };
+    // Rows cost more or less: threads take them by turns.
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let wrong: Vec<String> = std::thread::scope(|scope| {
+        let of = |first: usize| {
+            scope.spawn(move || -> Vec<String> {
+                laws.iter().enumerate().skip(first).step_by(threads).filter_map(wrong_of).collect()
+            })
+        };
+        let running: Vec<_> = (0..threads).map(of).collect();
+        running.into_iter().flat_map(|thread| thread.join().expect("laws panic nowhere")).collect()
+    });
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
