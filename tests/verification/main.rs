@@ -1,6 +1,7 @@
 //! Several crates against theory, without files. One test program: a new file is a line here.
 
 mod bars;
+mod bedding;
 mod crack_pressure;
 mod element;
 mod fracture_balance;

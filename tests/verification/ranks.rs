@@ -144,7 +144,7 @@ fn a_viscous_body_with_absorbing_ends_has_the_same_bits_on_any_number_of_ranks()
         let facet = |nodes: [u32; 3]| {
             let area = facet_area(nodes.map(|n| solid.reference[n as usize]), None);
             let (normal, area) = (area.normalize(), area.norm());
-            SupportedFacet { nodes, normal, area, along_and_across: [9e6, 5e6] }
+            SupportedFacet { nodes, area, answer: SupportedFacet::along_and_across(normal, [9e6, 5e6]) }
         };
         let facets: Vec<SupportedFacet> = side.map(facet).collect();
         let supports = SurfaceSupports::new(&facets, &facets[..9], &solid.mass);

@@ -162,9 +162,8 @@ fn soft_springs_let_a_box_swing_as_a_whole() {
                 let area = 0.5 * across.norm();
                 SupportedFacet {
                     nodes: facet.nodes,
-                    normal: across / (2.0 * area),
                     area,
-                    along_and_across: [stiffness; 2],
+                    answer: SupportedFacet::along_and_across(across / (2.0 * area), [stiffness; 2]),
                 }
             })
             .collect();

@@ -59,6 +59,14 @@ pub enum SolidError {
         /// Mean size of the elements where cracks go [m].
         size: f64,
     },
+    /// Damage in a body with beds.
+    #[error(
+        "body {body}: no damage in a material with bedding; expected bedding without damage, or damage without bedding"
+    )]
+    BeddedDamage {
+        /// Name of the body.
+        body: String,
+    },
     /// A phase field in a body that cannot have one.
     #[error("body {body}: no phase field with {reason}; expected {expected}, or no regularisation")]
     NotRegularised {

@@ -55,7 +55,7 @@ pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, Seen};
 pub use fractum_kernels::material::{
-    Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Plane, Softening, Wave,
+    Bedding, Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Plane, Softening, Stiffness, Wave,
 };
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};

@@ -1,9 +1,9 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
-use fractum_kernels::material::Hooke;
 use fractum_math::Sym3;
 
 use crate::body::Formulation;
+use crate::body::elasticity::Elasticity;
 use crate::cells::cell::Geometry;
 use crate::cells::kernel::elastic_strain;
 use crate::damage::edge::EdgeField;
@@ -88,7 +88,7 @@ fn stored_energy(solid: &Solid, (block, cell): (u32, u32)) -> f64 {
     let (block, cell) = (&solid.blocks[block as usize], cell as usize);
     let model = &solid.bodies[block.body];
     let strain = elastic_strain(&block.cells, cell, &solid.displacement, model.body.kinematics);
-    0.5 * block.nominal_stress(cell, &model.hooke, strain).dot(strain) * block.cells.volume[cell]
+    0.5 * block.nominal_stress(cell, &model.elasticity, strain).dot(strain) * block.cells.volume[cell]
 }
 
 /// Elements of a body that are newly cut through; only edges that broke since the last look matter.
@@ -137,7 +137,7 @@ fn step_energy(solid: &Solid, body: usize, dt: f64, cells: &[(u32, u32)]) -> f64
         let model = &solid.bodies[block.body];
         let dt = own_step(solid, block, dt);
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-        let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
+        let stress = block.nominal_stress(cell, &model.elasticity, step.strain_now(&block.cells, cell));
         0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
     };
     let own = (0..).zip(cells).filter(|(_, (block, _))| *block < ALONE).map(|(place, at)| (place, of(at)));
@@ -221,10 +221,10 @@ pub fn is_live_edge(solid: &Solid, nodes: [u32; 2]) -> bool {
 
 impl Block {
     /// Stress of one cell with its damage [Pa].
-    pub(crate) fn nominal_stress(&self, cell: usize, hooke: &Hooke, strain: Sym3) -> Sym3 {
-        let full = hooke.stress(strain);
+    pub(crate) fn nominal_stress(&self, cell: usize, elasticity: &Elasticity, strain: Sym3) -> Sym3 {
+        let full = elasticity.stress(strain);
         match &self.law {
-            BlockLaw::Edges(field) => field.nominal_stress(cell, hooke, strain).0,
+            BlockLaw::Edges(field) => field.nominal_stress(cell, elasticity, strain).0,
             _ => full * (1.0 - self.damage_of(cell)),
         }
     }
@@ -232,8 +232,8 @@ impl Block {
 
 impl EdgeField {
     /// Stress of one edge with its damage [Pa], and its damage.
-    pub(crate) fn nominal_stress(&self, place: usize, hooke: &Hooke, strain: Sym3) -> (Sym3, f64) {
-        let full = hooke.stress(strain);
+    pub(crate) fn nominal_stress(&self, place: usize, elasticity: &Elasticity, strain: Sym3) -> (Sym3, f64) {
+        let full = elasticity.stress(strain);
         // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
         match self.history(place).damage {
             0.0 => (full, 0.0),

@@ -4,10 +4,13 @@
 //! [`Solid::update_internal_forces`] sees the displacements that were found.
 
 use fractum_kernels::damage::{EdgeDamage, Seen, Taken};
+use fractum_kernels::material::Stiffness;
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
 use crate::body::Kinematics;
+use crate::body::elasticity::Elasticity;
 use crate::cells::block::Cells;
+use crate::cells::thermal_strain::ThermalStrain;
 use crate::motion::phase_damage::{phase_values, raise_phases, trial_phases};
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::{BodyModel, Solid};
@@ -20,7 +23,7 @@ pub struct CellDamage {
     phases: Vec<Vec<f64>>,
 }
 
-/// One cell: nodes, and a stiffness that is isotropic with the constants λ V (1 - d) and μ V (1 - d).
+/// One cell: nodes, and the stiffness of its body times V (1 - d).
 #[derive(Clone, Copy, Debug)]
 pub struct SecantCell<'a> {
     /// Number of its first pair of nodes, counting those of all cells, n² each.
@@ -29,12 +32,48 @@ pub struct SecantCell<'a> {
     pub nodes: &'a [u32],
     /// Gradients of their shape functions over the cell [1/m], as many as nodes.
     pub gradients: &'a [[f64; 3]],
-    /// λ V (1 - d) [N m].
-    pub lambda: f64,
-    /// μ V (1 - d) [N m].
-    pub mu: f64,
-    /// Stress of its thermal strain, the same in all directions, times V (1 - d) [N m]; 0 where nothing expands.
-    pub thermal: f64,
+    /// λ V (1 - d) and μ V (1 - d) [N m].
+    lame: [f64; 2],
+    /// The stiffness of beds, which replaces them, and V (1 - d) [m³].
+    bedded: Option<(&'a Stiffness, f64)>,
+    /// Stress of its thermal strain, the same in all directions, times V (1 - d) [N m]; of beds the thermal strain. 0 where nothing expands.
+    thermal: f64,
+}
+
+impl SecantCell<'_> {
+    /// Stress of a displacement gradient times V (1 - d) [N m].
+    #[inline]
+    pub fn stress(&self, h: &Mat3) -> Mat3 {
+        self.stress_beyond(h, 0.0)
+    }
+
+    /// The same less a share of the thermal stress.
+    #[inline]
+    fn stress_beyond(&self, h: &Mat3, share: f64) -> Mat3 {
+        let Some((stiffness, left)) = self.bedded else {
+            let [lambda, mu] = self.lame;
+            return (h + h.transpose()) * mu + Mat3::identity() * (lambda * h.trace() - share * self.thermal);
+        };
+        let strain = Sym3::symmetric_part(h) - Sym3::isotropic(share * self.thermal);
+        (stiffness.stress(strain) * left).to_matrix()
+    }
+
+    /// Stiffness between two nodes with these gradients along the first `B` axes [N/m].
+    #[inline]
+    pub fn between<const B: usize>(&self, gi: &[f64; 3], gj: &[f64; 3]) -> [[f64; B]; B] {
+        if let Some((stiffness, left)) = self.bedded {
+            let whole = stiffness.between(gi, gj);
+            return std::array::from_fn(|a| std::array::from_fn(|b| left * whole[a][b]));
+        }
+        let [lambda, mu] = self.lame;
+        let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
+        std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let diagonal = if a == b { dot } else { 0.0 };
+                lambda * gi[a] * gj[b] + mu * (gi[b] * gj[a] + diagonal)
+            })
+        })
+    }
 }
 
 /// An edge that may be damaged.
@@ -95,7 +134,7 @@ impl Solid {
         let (mut nodes, mut gradients) = (Vec::new(), Vec::new());
         let mut next_pair = 0;
         for (index, block) in self.blocks.iter().enumerate() {
-            let hooke = &self.bodies[block.body].hooke;
+            let Elasticity { hooke, bedded } = &self.bodies[block.body].elasticity;
             let cells = &block.cells;
             for cell in 0..cells.len() {
                 let count = cells.local_nodes(cell).len();
@@ -116,9 +155,12 @@ impl Solid {
                     gradients.push(*g);
                 }
                 let (lambda, mu) = (hooke.lambda * left, hooke.mu * left);
-                let thermal =
-                    cells.thermal.as_ref().map_or(0.0, |own| own.now(cell) * (lambda * own.unit.trace() + 2.0 * mu));
-                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lambda, mu, thermal });
+                let bedded = bedded.as_deref().map(|stiffness| (stiffness, left));
+                let per_strain = |unit: f64| if bedded.is_some() { 1.0 } else { lambda * unit + 2.0 * mu };
+                let thermal = |own: &ThermalStrain| own.now(cell) * per_strain(own.unit.trace());
+                let thermal = cells.thermal.as_deref().map_or(0.0, thermal);
+                let lame = [lambda, mu];
+                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lame, bedded, thermal });
             }
         }
     }
@@ -267,7 +309,7 @@ impl Solid {
         let Solid { blocks, bodies, .. } = self;
         let mut next = 0;
         for block in blocks {
-            let hooke = bodies[block.body].hooke;
+            let elasticity = &bodies[block.body].elasticity;
             let Block { law: BlockLaw::Edges(field), cells, dissipated, .. } = block else { continue };
             for cell in 0..field.state.len() {
                 let seen = seen[next];
@@ -277,7 +319,7 @@ impl Solid {
                 }
                 let ends = cells.elastic_ends(cell, [before, after]);
                 let growth = field.load(cell, seen, 0.0);
-                let taken = Taken::straight(0.5 * hooke.stress(ends[1]).dot(ends[0]));
+                let taken = Taken::straight(0.5 * elasticity.stress(ends[1]).dot(ends[0]));
                 *dissipated += taken.by(growth) * cells.volume[cell];
             }
         }
@@ -307,8 +349,7 @@ fn add_up(solid: &Solid, damage: &CellDamage, field: &[Vec3], share: f64, force:
         for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
             h += field[node as usize] * Vec3::from(*g).transpose();
         }
-        let stress =
-            (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace() - share * cell.thermal);
+        let stress = cell.stress_beyond(&h, share);
         for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
             force[node as usize] += stress * Vec3::from(*g);
         }
@@ -327,7 +368,7 @@ fn add_stresses(
     stresses.clear();
     let stress = |block: &Block, cell: usize| {
         let strain = Sym3::symmetric_part(&block.cells.gradient(cell, |node| field[node]));
-        solid.bodies[block.body].hooke.stress(elastic(&block.cells, cell, strain))
+        solid.bodies[block.body].elasticity.stress(elastic(&block.cells, cell, strain))
     };
     for block in solid.blocks.iter().filter(|b| matches!(b.law, BlockLaw::Edges(_))) {
         stresses.extend((0..block.cells.len()).map(|cell| stress(block, cell)));

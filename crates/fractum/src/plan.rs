@@ -1,5 +1,6 @@
 //! What a run will do: bodies, physics on and skipped, time step, size, time.
 
+mod beds;
 mod bodies;
 mod cost;
 mod estimate;

@@ -194,6 +194,13 @@ pub(super) fn solid_bodies<'a>(
         body.kinematics = part.body.kinematics;
         body.plane = part.body.plane.as_ref().map_or(Plane::Strain, |plane| plane.value);
         body.thickness = part.body.depth;
+        if let Some(beds) = &material.bedding {
+            if beds.value.by_dip && part.shape == fem::ElementKind::T3 {
+                let found = ".dip for a plane body, whose third axis is not vertical";
+                context.error(&beds.place, found, "normal = [x, y, 0], the normal of the beds in the plane");
+            }
+            body.bedding = Some(beds.value.law);
+        }
         if let Some(damage) = material.damage.as_ref().filter(|_| part.body.damage) {
             if damage.value.unilateral == Some(true) && body.formulation == Formulation::Standard {
                 context.error(

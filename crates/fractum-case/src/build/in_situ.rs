@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_fem::{Elastic, Plane, Solid};
+use fractum_fem::{Body, ElementKind, Plane, Solid, Stiffness};
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_output::number::quantity;
 use fractum_scene::{Load, NodalForce};
@@ -117,11 +117,13 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
 /// Supports must be able to follow the displacements of the far field: what they hold cannot be strained.
 fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &Solid, numbering: &Numbering) {
     let elastic = |body: usize| solid.body(body).elastic;
-    let same = |a: Elastic, b: Elastic| a.young_modulus == b.young_modulus && a.poisson_ratio == b.poisson_ratio;
-    if (1..solid.body_count()).any(|body| !same(elastic(0), elastic(body))) {
+    let same = |a: &Body, b: &Body| {
+        let moduli = |body: &Body| (body.elastic.young_modulus, body.elastic.poisson_ratio);
+        moduli(a) == moduli(b) && a.bedding == b.bedding
+    };
+    if (1..solid.body_count()).any(|body| !same(solid.body(0), solid.body(body))) {
         return; // Layers have no common far field: their supports show in the balance of forces.
     }
-    let plane = solid.is_plane().then(|| solid.body(0).plane);
     let mut held: Vec<(usize, Vec3, usize)> = Vec::new();
     for (index, support) in context.case.supports.iter().enumerate() {
         if context.names_particles(&support.on) || support.motion.iter().all(Option::is_none) {
@@ -132,7 +134,7 @@ fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &S
             held.extend(axes.map(|axis| (index, numbering.positions[node as usize], axis)));
         }
     }
-    let displacement = field.displacements(elastic(0), plane);
+    let displacement = field.displacements(solid.body(0));
     let rows = held.iter().map(|&(_, place, axis)| (rigid(place, field, axis), displacement(place)[axis]));
     let (mut gram, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
     for (row, u) in rows.clone() {
@@ -187,10 +189,15 @@ impl FarField {
 
     /// Displacements u_i = ε⁰_ij x_j + ½ (ε_ij,k + ε_ik,j − ε_jk,i) x_j x_k of the linear strain that goes with the stress.
     ///
-    /// - `plane`: state of plane bodies; none in space
-    fn displacements(&self, elastic: Elastic, plane: Option<Plane>) -> impl Fn(Vec3) -> Vec3 + use<> {
-        let (e, nu) = (elastic.young_modulus, elastic.poisson_ratio);
+    /// - `body`: one of the bodies, which are all of one material
+    fn displacements(&self, body: &Body) -> impl Fn(Vec3) -> Vec3 + use<> {
+        let (e, nu) = (body.elastic.young_modulus, body.elastic.poisson_ratio);
+        let plane = (body.shape == ElementKind::T3).then_some(body.plane);
+        let beds = body.stiffness();
         let strain = |stress: Sym3| -> Mat3 {
+            if let Some(beds) = &beds {
+                return strain_of_beds(beds, plane.is_some(), stress);
+            }
             let mut sigma = stress.to_matrix();
             if let Some(plane) = plane {
                 sigma = Mat3::new(sigma.m11, sigma.m12, 0.0, sigma.m12, sigma.m22, 0.0, 0.0, 0.0, 0.0);
@@ -210,6 +217,17 @@ impl FarField {
             constant * x + Vec3::from_fn(|i, _| quadratic(i))
         }
     }
+}
+
+/// Strain of a stress in a body with beds, of a plane one in its plane.
+fn strain_of_beds(beds: &Stiffness, in_plane: bool, stress: Sym3) -> Mat3 {
+    let counts = |i: usize| !in_plane || [0, 1, 3].contains(&i);
+    let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
+    let rows = Matrix6::from_fn(|i, j| if counts(i) && counts(j) { beds.rows()[i][j] } else { unit(i, j) });
+    let stress = Vector6::from_fn(|i, _| if counts(i) { stress.0[i] } else { 0.0 });
+    let strain = rows.lu().solve(&stress).unwrap_or_default();
+    // Shear strains of the rows are engineering ones.
+    Sym3(std::array::from_fn(|i| if i < 3 { strain[i] } else { 0.5 * strain[i] })).to_matrix()
 }
 
 /// Tractions σ n as forces on nodes: on every corner the integral of its share of a traction that is linear.

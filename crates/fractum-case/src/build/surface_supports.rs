@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use fractum_fem::{ElementKind, Solid};
-use fractum_math::connected;
+use fractum_fem::{Elastic, ElementKind, Solid};
+use fractum_math::{Mat3, Vec3, connected};
 use fractum_scene::{SupportedFacet, SurfaceSupports};
 
 use super::Context;
@@ -26,7 +26,7 @@ impl Context<'_> {
         if case.supports.iter().all(|support| support.surface.is_none()) {
             return (SurfaceSupports::default(), all);
         }
-        let impedances = impedances(parts, solid, surface, boundary_of_parts);
+        let behind = bodies_behind(parts, solid, surface, boundary_of_parts);
         let outer = is_outer(surface, numbering.positions.len());
         for support in &case.supports {
             let Some(kind) = &support.surface else { continue };
@@ -42,11 +42,13 @@ impl Context<'_> {
             for facet in &facets {
                 let vector = surface.area_vector(facet);
                 let (normal, area) = (vector.normalize(), vector.norm());
-                let (supports, along_and_across) = match kind.value {
-                    SurfaceSupport::Absorbing => (&mut absorbing, impedances[&sorted(*facet)]),
-                    SurfaceSupport::Elastic { normal, tangential } => (&mut elastic, [normal, tangential]),
+                let (supports, answer) = match kind.value {
+                    SurfaceSupport::Absorbing => (&mut absorbing, impedance(solid, behind[&sorted(*facet)], normal)),
+                    SurfaceSupport::Elastic { normal: along, tangential } => {
+                        (&mut elastic, SupportedFacet::along_and_across(normal, [along, tangential]))
+                    }
                 };
-                supports.push(SupportedFacet { nodes: *facet, normal, area, along_and_across });
+                supports.push(SupportedFacet { nodes: *facet, area, answer });
             }
             all.extend(facets);
         }
@@ -81,19 +83,30 @@ impl Context<'_> {
     }
 }
 
-/// ρ c_P and ρ c_S of the material behind every facet of the surface [Pa s/m].
+/// Traction per velocity of a facet through which the waves of a body leave [Pa s/m]: ρ c_P along its normal and ρ c_S across it, or with beds
+/// √(ρ Γ) with Christoffel's tensor of its normal.
+fn impedance(solid: &Solid, index: usize, normal: Vec3) -> Mat3 {
+    let body = solid.body(index);
+    let Elastic { density, .. } = body.elastic;
+    let Some(stiffness) = body.stiffness() else {
+        let speeds = [solid.p_wave_speed(index), body.elastic.s_wave_speed()];
+        return SupportedFacet::along_and_across(normal, speeds.map(|speed| density * speed));
+    };
+    stiffness.impedance(density, normal)
+}
+
+/// The body behind every facet of the surface.
 ///
 /// - `boundary_of_parts`: facets of each body in space
-fn impedances(
+fn bodies_behind(
     parts: &[Part],
     solid: &Solid,
     surface: &Surface,
     boundary_of_parts: &[Vec<[u32; 3]>],
-) -> HashMap<[u32; 3], [f64; 2]> {
+) -> HashMap<[u32; 3], usize> {
     let mut found = HashMap::new();
     for (index, part) in parts.iter().enumerate() {
         let body = solid.body(index);
-        let own = [solid.p_wave_speed(index), body.elastic.s_wave_speed()].map(|speed| body.elastic.density * speed);
         let sides: Vec<[u32; 3]> = match part.shape {
             ElementKind::T3 => {
                 body.elements.iter().flat_map(|&[a, b, c, _]| [[a, b, b], [b, c, c], [c, a, a]]).collect()
@@ -101,7 +114,7 @@ fn impedances(
             ElementKind::T4 => boundary_of_parts[index].clone(),
         };
         let outer = sides.into_iter().map(sorted).filter(|side| surface.outward(*side).is_some());
-        found.extend(outer.map(|side| (side, own)));
+        found.extend(outer.map(|side| (side, index)));
     }
     found
 }

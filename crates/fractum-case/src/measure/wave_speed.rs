@@ -45,6 +45,11 @@ impl Measure for WaveSpeed {
         if body.is_none() {
             scene.names.error(&self.body.place, format!("= \"{name}\""), "the name of a solid body");
         }
+        if let Some(body) = body.filter(|&body| solid.body(body).bedding.is_some()) {
+            let found =
+                format!("= \"{}\" has beds, through which waves have speeds by direction", solid.body(body).name);
+            scene.names.error(&self.body.place, found, "a body without bedding");
+        }
         Some(Box::new(InBody { body: body?, wave: self.wave }))
     }
 }

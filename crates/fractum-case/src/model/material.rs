@@ -1,6 +1,6 @@
 //! Materials: elasticity, damage, contact.
 
-use fractum_fem::{CriterionKind, DamageLaw, Regularisation};
+use fractum_fem::{Bedding, CriterionKind, DamageLaw, Regularisation};
 use fractum_scene::ContactParameters;
 
 use super::{BondFailure, Bonds, Interfaces, Scatter, Thermal};
@@ -18,6 +18,8 @@ pub struct Material {
     pub young_modulus: f64,
     /// Poisson's ratio [-], between -1 and 0.5, both excluded.
     pub poisson_ratio: f64,
+    /// Beds, where the material has a `bedding` table.
+    pub bedding: Option<Spanned<Beds>>,
     /// Damage, where the material has a `damage` table.
     pub damage: Option<Spanned<Damage>>,
     /// Beams of bonded bodies, where the material has a `bonds` table; found by calibration otherwise.
@@ -32,6 +34,17 @@ pub struct Material {
     pub contact: ContactParameters,
     /// Young's modulus that contacts of its particles take [Pa], > 0; `None` = that of the material.
     pub contact_modulus: Option<f64>,
+}
+
+/// Bedding of a material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beds {
+    /// Normal of the beds, and elasticity along it.
+    pub law: Bedding,
+    /// Whether the normal comes from dip and dip direction.
+    pub by_dip: bool,
+    /// Whether the shear modulus is Saint-Venant's estimate.
+    pub is_estimated: bool,
 }
 
 /// Softening damage.

@@ -34,7 +34,7 @@ pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use interface::{Interface, InterfaceFaces};
 pub use loose::{LooseBody, LooseSource};
-pub use material::{Damage, Material};
+pub use material::{Beds, Damage, Material};
 pub use output::Output;
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};

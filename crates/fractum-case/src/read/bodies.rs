@@ -91,10 +91,12 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
         Some(Kind::Bonded) => {
             let material = material_of(&table, materials, used);
             let here = material.and_then(|index| materials[index].1.as_ref());
+            refuse_beds(&table, here, "bonded bodies");
             (bonded(&table, material, here).map(BodyKind::Bonded), "on a bonded body")
         }
         Some(Kind::Particles) => {
             let material = material_of(&table, materials, used);
+            refuse_beds(&table, material.and_then(|index| materials[index].1.as_ref()), "loose particles");
             (loose(&table, material).map(BodyKind::Particles), "on loose particles")
         }
         Some(Kind::Rigid) => {
@@ -106,6 +108,15 @@ fn body(table: Table<'_>, materials: &[(String, Option<Material>)], used: &mut [
     };
     table.finish(why);
     Some(Body { name: name?, kind: kind? })
+}
+
+/// Beds have an effect in solids only.
+fn refuse_beds(table: &Table<'_>, material: Option<&Material>, bodies: &str) {
+    let Some(material) = material.filter(|material| material.bedding.is_some()) else { return };
+    let place = table.place_below("material");
+    let found = format!("= \"{}\", whose bedding has no effect on {bodies}", material.name.value);
+    let note = Diagnostic::error(&place, found).expected("a material without bedding");
+    table.reader.note(note.remedy("take a solid body, or a material without the table"));
 }
 
 fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<SolidBody> {

@@ -27,10 +27,20 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     let density = table.quantity("density").physical().usual(&DENSITY).required();
     let young_modulus = table.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).required();
     let poisson_ratio = table.quantity("poisson_ratio").between(-1.0, 0.5).required();
+    let bedding = table.table("bedding").map(|table| {
+        let place = table.place.clone();
+        super::bedding::bedding(table, density.zip(young_modulus).zip(poisson_ratio))
+            .map(|beds| Spanned::new(beds, place))
+    });
     let damage = table.table("damage").map(|table| {
         let place = table.place.clone();
         damage(table, poisson_ratio).map(|damage| Spanned::new(damage, place))
     });
+    if let (Some(Some(beds)), Some(_)) = (&bedding, &damage) {
+        let found = "beside damage, which does not know the direction of beds";
+        let note = Diagnostic::error(&beds.place, found).expected("one of the two tables");
+        table.reader.note(note.remedy("remove bedding or damage; a bed that may open can be an interface"));
+    }
     let bonds = table.table("bonds").map(|table| {
         let place = table.place.clone();
         super::bonded::bonds(table).map(|bonds| Spanned::new(bonds, place))
@@ -59,6 +69,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         density: density?,
         young_modulus: young_modulus?,
         poisson_ratio: poisson_ratio?,
+        bedding: bedding.map_or(Some(None), |bedding| bedding.map(Some))?,
         damage: damage.map_or(Some(None), |damage| damage.map(Some))?,
         bonds: bonds.map_or(Some(None), |bonds| bonds.map(Some))?,
         interfaces: interfaces.map_or(Some(None), |interfaces| interfaces.map(Some))?,

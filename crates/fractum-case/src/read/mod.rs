@@ -1,5 +1,6 @@
 //! From the tree of values to the [`Case`].
 
+mod bedding;
 mod bodies;
 mod bonded;
 mod boundary;

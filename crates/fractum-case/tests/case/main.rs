@@ -1,5 +1,6 @@
 //! Case files read through the public interface: the good ones, and the wrong ones.
 
+mod bedding;
 mod hash_and_overrides;
 mod keys;
 mod mistakes;

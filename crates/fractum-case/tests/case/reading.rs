@@ -26,7 +26,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(mesh.files(), ["meshes/block_1.msh", "meshes/block_2.msh"].map(|file| folder().join(file)));
     assert_eq!(case.source.parameters["E1"], 42e9);
 
-    let [concrete, mortar, cement, grout] = &case.materials[..] else { panic!() };
+    let [concrete, mortar, cement, grout, ..] = &case.materials[..] else { panic!() };
     assert_eq!((concrete.density, concrete.young_modulus, concrete.poisson_ratio), (2400.0, 21e9, 0.2));
     let damage = &concrete.damage.as_ref().unwrap().value;
     let law = &damage.law;

@@ -1,9 +1,10 @@
 pub(crate) mod edges;
+pub(crate) mod elasticity;
 
 use std::sync::Arc;
 
 use fractum_kernels::damage::{Restraint, Softens};
-use fractum_kernels::material::{DamageLaw, Elastic, Hooke, Plane};
+use fractum_kernels::material::{Bedding, DamageLaw, Elastic, Hooke, Plane};
 use serde::{Deserialize, Serialize};
 
 /// Kind of all elements of a body.
@@ -95,8 +96,10 @@ pub struct Body {
     pub shape: ElementKind,
     /// Node indices of its elements, positively oriented.
     pub elements: Arc<Vec<[u32; 4]>>,
-    /// Elasticity.
+    /// Elasticity; of bedded rock within the beds.
     pub elastic: Elastic,
+    /// Beds, which only elastic bodies may have.
+    pub bedding: Option<Bedding>,
     /// Where strain and stress live.
     pub formulation: Formulation,
     /// Measure of strain.
@@ -117,6 +120,7 @@ impl Body {
             shape,
             elements: Arc::new(elements),
             elastic,
+            bedding: None,
             formulation: Formulation::Standard,
             kinematics: Kinematics::Small,
             plane: Plane::Strain,
@@ -148,7 +152,7 @@ impl Body {
         (self.shape == ElementKind::T3).then_some(self.plane)
     }
 
-    /// Its elastic law.
+    /// Its elastic law without beds.
     pub(crate) fn hooke(&self) -> Hooke {
         Hooke::new(&self.elastic, self.across())
     }

@@ -1,19 +1,21 @@
 //! The force kernel: strain of each cell, stress by its law, forces on its nodes.
 
-use fractum_kernels::material::Hooke;
 use fractum_math::{FOUR, Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
+use crate::body::elasticity::{Elasticity, Linear};
 use crate::cells::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
 use crate::cells::thermal_strain::ThermalStrain;
 use crate::cells::viscosity::{BodyViscosity, ViscousCells};
 use crate::element::four_turns::FourGradients;
-use crate::element::polar::{corotational_strain, product, strain_and_turn};
+use crate::element::polar::{conjugate, corotational_strain, product, strain_and_turn};
 
 /// Stress of a cell for its strain; owns the history of the cells of a block.
 pub(crate) trait CellLaw {
     /// Whether the law is faster with four cells at a time.
     const BY_FOURS: bool = false;
+    /// Whether stress has the axes of strain.
+    const IS_COAXIAL: bool = true;
     /// Stress [Pa] times the volume of cell `cell` [m³].
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3;
     /// The same of the four cells from `first` on.
@@ -33,15 +35,17 @@ pub(crate) trait CellLaw {
 }
 
 /// An elastic block: sums its energy when asked to.
-pub(crate) struct ElasticCells {
-    pub(crate) hooke: Hooke,
+pub(crate) struct ElasticCells<L> {
+    pub(crate) elasticity: L,
     pub(crate) energy: Option<f64>,
 }
 
-impl CellLaw for ElasticCells {
+impl<L: Linear> CellLaw for ElasticCells<L> {
+    const IS_COAXIAL: bool = L::IS_COAXIAL;
+
     #[inline(always)]
     fn scaled_stress(&mut self, _cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        let stress = self.hooke.stress(strain) * volume;
+        let stress = self.elasticity.stress(strain) * volume;
         if let Some(energy) = &mut self.energy {
             *energy += 0.5 * stress.dot(strain);
         }
@@ -71,6 +75,7 @@ impl<L> ExpandingCells<'_, L> {
 
 impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
     const BY_FOURS: bool = L::BY_FOURS;
+    const IS_COAXIAL: bool = L::IS_COAXIAL;
 
     #[inline(always)]
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
@@ -177,10 +182,15 @@ pub(crate) fn symmetric_columns(s: Sym3) -> [Lane; 3] {
     [Lane([xx, xy, zx, 0.0]), Lane([xy, yy, yz, 0.0]), Lane([zx, yz, zz, 0.0])]
 }
 
+#[inline(always)]
+fn matrix_columns(m: &Mat3) -> [Lane; 3] {
+    [0, 1, 2].map(|c| Lane([m[(0, c)], m[(1, c)], m[(2, c)], 0.0]))
+}
+
 /// M s by columns.
 #[inline(always)]
 fn turned_columns(m: &Mat3, s: Sym3) -> [Lane; 3] {
-    let [x, y, z] = [0, 1, 2].map(|c| Lane([m[(0, c)], m[(1, c)], m[(2, c)], 0.0]));
+    let [x, y, z] = matrix_columns(m);
     let [xx, yy, zz, xy, yz, zx] = s.0;
     let column = |a: f64, b: f64, c: f64| Lane::ZERO.plus(x, a).plus(y, b).plus(z, c);
     [column(xx, xy, zx), column(xy, yy, yz), column(zx, yz, zz)]
@@ -224,7 +234,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     fn run<const N: usize>(&mut self, cells: &Cells, run: Run) {
         let Run { mut begin, end, .. } = run;
         // Cells that turn take more arithmetic than memory.
-        if L::BY_FOURS || COROTATIONAL {
+        if L::BY_FOURS || COROTATIONAL && L::IS_COAXIAL {
             let start = cells.starts[begin] as usize;
             let gradients = cells.gradients[start..].chunks_exact(FOUR * N);
             let local = cells.local[start + begin..].chunks_exact(FOUR * (N + 1));
@@ -260,7 +270,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         }
         let (strain, turn) = self.strain(cell, local, gradients, volume);
         let stress = self.law.scaled_stress(cell, strain, volume);
-        add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, &turn));
+        add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, strain, &turn));
     }
 
     /// Four cells of `N` gradients each.
@@ -323,7 +333,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         }
         let stresses = self.law.scaled_stresses(first, &strains, volumes);
         for k in 0..FOUR {
-            columns[k] = Self::stress_columns(stresses[k], &turns[k]);
+            columns[k] = Self::stress_columns(stresses[k], strains[k], &turns[k]);
         }
     }
 
@@ -345,14 +355,20 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         if is_inverted(&h) {
             self.note_inverted(cell, volume);
         }
+        if !L::IS_COAXIAL {
+            let (strain, m) = corotational_strain(&h);
+            return (strain, Turn { m, n: Sym3::ZERO });
+        }
         let (strain, m, n) = strain_and_turn(&h);
         (strain, Turn { m, n })
     }
 
-    /// Stress on the nodes by columns: R σ = M (1 + n) σ, as laws are isotropic, so that stress is coaxial with strain.
+    /// Stress on the nodes by columns: R σ = M (1 + n) σ where stress is coaxial with strain.
     #[inline(always)]
-    fn stress_columns(stress: Sym3, turn: &Turn) -> [Lane; 3] {
-        if COROTATIONAL {
+    fn stress_columns(stress: Sym3, strain: Sym3, turn: &Turn) -> [Lane; 3] {
+        if COROTATIONAL && !L::IS_COAXIAL {
+            matrix_columns(&(turn.m * conjugate(strain, stress)))
+        } else if COROTATIONAL {
             turned_columns(&turn.m, stress + Sym3(product(turn.n.0, stress.0)))
         } else {
             symmetric_columns(stress)
@@ -383,7 +399,7 @@ widest! {
 pub(crate) struct Viscous<'a> {
     pub(crate) corotational: bool,
     pub(crate) viscosity: &'a BodyViscosity,
-    pub(crate) hooke: Hooke,
+    pub(crate) elasticity: &'a Elasticity,
     /// Viscous stress of the last step; replaced by that of this one.
     pub(crate) of_cells: &'a mut ViscousCells,
 }
@@ -406,7 +422,7 @@ fn viscous_forces_by_cell<L: CellLaw>(
     cells: &Cells,
     scratch: &mut Scratch,
     law: &mut L,
-    Viscous { corotational, viscosity, hooke, of_cells }: Viscous<'_>,
+    Viscous { corotational, viscosity, elasticity, of_cells }: Viscous<'_>,
 ) -> (f64, Option<usize>) {
     let Scratch { displacement, velocity, force } = scratch;
     let (mut dissipated_power, mut inverted) = (0.0, None);
@@ -423,16 +439,24 @@ fn viscous_forces_by_cell<L: CellLaw>(
         } else {
             (small_strain(x, y, z), Mat3::identity())
         };
-        let mut stress = law.scaled_stress(cell, strain, volume);
+        let elastic = law.scaled_stress(cell, strain, volume);
+        let (mut stress, mut viscous) = (elastic, Mat3::zeros());
         if let Some(velocity) = velocity.as_deref() {
             let [x, y, z] = gradient_columns(velocity, local, gradients);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
             // The mean of the stress at both ends of the step, at the rate between them.
-            let [now, mean] = of_cells.update(viscosity, &hooke, cell, rate, [law.integrity(cell), volume]);
+            let [now, mean] = of_cells.update(viscosity, elasticity, cell, rate, [law.integrity(cell), volume]);
             dissipated_power += mean.dot(rate);
             stress += now;
+            if !L::IS_COAXIAL {
+                viscous = now.to_matrix();
+            }
         }
-        let columns = if corotational { turned_columns(&rotation, stress) } else { symmetric_columns(stress) };
+        let columns = match corotational {
+            true if !L::IS_COAXIAL => matrix_columns(&(rotation * (conjugate(strain, elastic) + viscous))),
+            true => turned_columns(&rotation, stress),
+            false => symmetric_columns(stress),
+        };
         add_cell_forces(force, local, gradients, columns);
     }
     (dissipated_power, inverted)
@@ -477,7 +501,7 @@ mod tests {
                 let scratch = block.scratch.as_mut().unwrap();
                 scratch.load(&cells.nodes, displacement);
                 scratch.load_velocity(&cells.nodes, velocity);
-                let mut law = ElasticCells { hooke: model.hooke, energy: Some(0.0) };
+                let mut law = ElasticCells { elasticity: model.elasticity.hooke, energy: Some(0.0) };
                 let mut of_cells = ViscousCells::new(&model.body, &cells.volume);
                 let mut power = 0.0;
                 match viscous {
@@ -491,8 +515,8 @@ mod tests {
                         run(cells, scratch, &mut law);
                     }
                     true => {
-                        let (viscosity, hooke) = (model.viscosity.as_ref().unwrap(), model.hooke);
-                        let viscous = Viscous { corotational, viscosity, hooke, of_cells: &mut of_cells };
+                        let (viscosity, elasticity) = (model.viscosity.as_ref().unwrap(), &model.elasticity);
+                        let viscous = Viscous { corotational, viscosity, elasticity, of_cells: &mut of_cells };
                         let run = if fastest { viscous_forces } else { viscous_forces_by_cell };
                         power = run(cells, scratch, &mut law, viscous).0;
                     }

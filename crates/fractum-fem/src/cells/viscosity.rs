@@ -2,10 +2,10 @@
 //! (1950) 232-237, with the linear term of Landshoff (1955): a pressure ρ l (b₁ c + b₂² l |ε̇_v|) |ε̇_v| in compression, which
 //! spreads a shock over a few elements.
 
-use fractum_kernels::material::Hooke;
 use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
+use crate::body::elasticity::Elasticity;
 use crate::body::{Body, ElementKind, Formulation};
 use crate::element::regular_edge;
 
@@ -78,13 +78,13 @@ impl ViscousCells {
     pub(crate) fn update(
         &mut self,
         viscosity: &BodyViscosity,
-        hooke: &Hooke,
+        elasticity: &Elasticity,
         cell: usize,
         rate: Sym3,
         [integrity, volume]: [f64; 2],
     ) -> [Sym3; 2] {
         let BodyViscosity { constants, density, wave_speed, .. } = *viscosity;
-        let mut stress = hooke.stress(rate) * (constants.stiffness_time * integrity);
+        let mut stress = elasticity.stress(rate) * (constants.stiffness_time * integrity);
         let volumetric = rate.trace();
         if volumetric < 0.0 {
             let length = self.length[cell];

@@ -4,7 +4,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use fractum_math::{Lane, Mat3, Sym3, widest};
+use fractum_math::{Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::element::reflection::without_reflection;
 
@@ -39,6 +39,24 @@ fn strain_and_rotation(h: &Mat3) -> (Sym3, Mat3) {
     let f = Mat3::identity() + h;
     let r = polar_rotation(&f);
     (Sym3::symmetric_part(&(r.transpose() * f - Mat3::identity())), r)
+}
+
+/// The Biot stress T of a law whose stress does not have the axes of strain, with the skew part W by which R (T + W) does the work of T on U at any
+/// displacement: T + W = U S with a symmetric S, so that U W + W U = ε T - T ε.
+#[inline]
+pub(crate) fn conjugate(strain: Sym3, stress: Sym3) -> Mat3 {
+    let (strain, stress) = (strain.to_matrix(), stress.to_matrix());
+    let product = strain * stress;
+    let right = axis_of(&(product - product.transpose()));
+    let stretch = strain + Mat3::identity();
+    let axis = (Mat3::identity() * stretch.trace() - stretch).try_inverse().map_or(Vec3::zeros(), |m| m * right);
+    stress + axis.cross_matrix()
+}
+
+/// The vector w of a skew matrix, which is w × on vectors.
+#[inline]
+fn axis_of(skew: &Mat3) -> Vec3 {
+    Vec3::new(skew.m32, skew.m13, skew.m21)
 }
 
 /// A number of one cell, or those of four.
@@ -154,7 +172,7 @@ fn polar_rotation(f: &Mat3) -> Mat3 {
 
 #[cfg(test)]
 mod tests {
-    use fractum_math::{Vec3, rotation_by};
+    use fractum_math::rotation_by;
     use proptest::prelude::*;
 
     use super::*;

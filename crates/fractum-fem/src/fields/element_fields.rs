@@ -116,15 +116,15 @@ pub(crate) fn cell_field(solid: &Solid, index: usize, at: (u32, u32)) -> (Sym3, 
         ALONE => {
             let strain = strain_alone(solid, model, at.1);
             let received =
-                solid.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.hooke, strain));
-            return received.unwrap_or_else(|| (model.hooke.stress(strain), 0.0));
+                solid.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.elasticity, strain));
+            return received.unwrap_or_else(|| (model.elasticity.stress(strain), 0.0));
         }
         _ => {}
     }
     let (cells, place) = cells_with(solid, at);
     let strain = kernel::elastic_strain(&cells, place, &solid.displacement, model.body.kinematics);
     let (block, cell) = (&solid.blocks[at.0 as usize], at.1 as usize);
-    (block.nominal_stress(cell, &model.hooke, strain), block.damage_of(cell))
+    (block.nominal_stress(cell, &model.elasticity, strain), block.damage_of(cell))
 }
 
 /// Strain of a cell, that of thermal expansion included.

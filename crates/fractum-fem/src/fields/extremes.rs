@@ -93,7 +93,7 @@ fn extremes_of(solid: &Solid, index: u32) -> [Found; 4] {
         if unarmed.is_none() && in_tension.is_none() {
             continue;
         }
-        let stress = model.hooke.stress(elastic);
+        let stress = model.elasticity.stress(elastic);
         // An element at the border of the region may be damaged in part.
         let carried = 1.0 - block.damage_of(cell);
         // Principal values are found where they may be the largest.

@@ -25,7 +25,7 @@ pub fn set_expansion(solid: &mut Solid, coefficients: &[f64]) {
         let zero = vec![0.0; block.cells.len()];
         block.cells.thermal = Some(Box::new(ThermalStrain {
             coefficient: coefficients[block.body],
-            unit: Sym3([1.0, 1.0, model.hooke.zz, 0.0, 0.0, 0.0]),
+            unit: Sym3([1.0, 1.0, model.elasticity.hooke.zz, 0.0, 0.0, 0.0]),
             weights: weights(block, model, &geometry),
             start: zero.clone(),
             change: zero,
@@ -56,7 +56,7 @@ pub fn find_expansion_work(solid: &mut Solid) {
         let work = |cell: usize| {
             let strain = elastic_strain(&block.cells, cell, displacement, model.body.kinematics);
             let change = own.unit * own.change[cell];
-            -block.cells.volume[cell] * block.nominal_stress(cell, &model.hooke, strain).dot(change)
+            -block.cells.volume[cell] * block.nominal_stress(cell, &model.elasticity, strain).dot(change)
         };
         block.expansion_work = (0..block.cells.len()).map(work).sum();
     });

@@ -217,7 +217,7 @@ pub(crate) fn phase_values(solid: &Solid) -> Vec<Vec<f64>> {
 /// `after`, and books what damage takes on the way.
 pub(crate) fn raise_phases(solid: &mut Solid, values: &[Vec<f64>], before: &[Vec3], after: &[Vec3]) {
     for_each_phase_field(solid, |solid, body, field| {
-        let hooke = solid.bodies[body].hooke;
+        let hooke = solid.bodies[body].elasticity.hooke;
         let law = field.law;
         field.take_rest(&values[body], |own, d| {
             let taken = match &solid.bodies[body] {

@@ -1,10 +1,10 @@
 //! The largest stable step of central differences, 2/ω_max.
 
-use fractum_kernels::material::Hooke;
-use fractum_math::{Mat3, Vec3, largest_eigenvalue, sum_chunks};
+use fractum_math::{Vec3, largest_eigenvalue, sum_chunks};
 use nalgebra::{Matrix6, SMatrix};
 use rayon::prelude::*;
 
+use crate::body::elasticity::Elasticity;
 use crate::cells::cell::Geometry;
 use crate::solid::Solid;
 use crate::solid::subcycling::forget_ahead;
@@ -83,11 +83,10 @@ fn bound(solid: &Solid, counts: impl Fn(usize, u32) -> bool) -> StableStep {
         let corners = model.body.shape.node_count();
         let scale = corners as f64 / model.body.elastic.density;
         // The trace of the 6×6 dual bounds its largest eigenvalue: most elements need no eigenvalue.
-        let hooke = &model.hooke;
-        let trace_factor = hooke.lambda + 2.0 * hooke.mu + 2.0 * hooke.mu;
+        let elasticity = &model.elasticity;
         let trace = |element: usize| {
             let (_, gradients) = geometry.element(element);
-            gradients[..corners].iter().map(|g| g.norm_squared()).sum::<f64>() * trace_factor * scale
+            elasticity.trace_sum(&gradients[..corners]) * scale
         };
         let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && solid.owns(body, e);
         let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
@@ -97,7 +96,7 @@ fn bound(solid: &Solid, counts: impl Fn(usize, u32) -> bool) -> StableStep {
             if trace <= worst.frequency * worst.frequency {
                 break;
             }
-            let frequency = element_frequency(&geometry, hooke, element as usize);
+            let frequency = element_frequency(&geometry, elasticity, element as usize);
             if frequency > worst.frequency {
                 worst = StableStep { frequency, governing: (body, element) };
                 worst_trace = trace;
@@ -128,19 +127,15 @@ fn scaled_stiffness(solid: &mut Solid, q: &[Vec3], root: &[f64]) -> Vec<Vec3> {
 }
 
 /// Highest frequency of an element by itself, with its share of the mass [rad/s].
-pub(crate) fn element_frequency(geometry: &Geometry, hooke: &Hooke, element: usize) -> f64 {
+pub(crate) fn element_frequency(geometry: &Geometry, elasticity: &Elasticity, element: usize) -> f64 {
     let corners = geometry.body.shape.node_count();
     let (_, gradients) = geometry.element(element);
     let scale = corners as f64 / geometry.body.elastic.density;
-    (element_eigenvalue(&gradients[..corners], hooke) * scale).sqrt()
+    (element_eigenvalue(&gradients[..corners], elasticity) * scale).sqrt()
 }
 
 /// Largest eigenvalue of D Σ b bᵀ, which times n/ρ is the squared frequency of an element with the mass ρV/n per node.
-fn element_eigenvalue(gradients: &[Vec3], hooke: &Hooke) -> f64 {
-    let (lambda, g) = (hooke.lambda, hooke.mu);
-    let mut d = Matrix6::zeros();
-    d.fixed_view_mut::<3, 3>(0, 0).copy_from(&(Mat3::repeat(lambda) + Mat3::identity() * (2.0 * g)));
-    d.fixed_view_mut::<3, 3>(3, 3).copy_from(&(Mat3::identity() * g));
+fn element_eigenvalue(gradients: &[Vec3], elasticity: &Elasticity) -> f64 {
     let mut sum = Matrix6::zeros();
     for gradient in gradients {
         let (x, y, z) = (gradient.x, gradient.y, gradient.z);
@@ -156,6 +151,6 @@ fn element_eigenvalue(gradients: &[Vec3], hooke: &Hooke) -> f64 {
         sum += b * b.transpose();
     }
     // Eigenvalues of D S are those of Lᵀ S L with D = L Lᵀ; volume cancels against the lumped mass.
-    let Some(l) = d.cholesky().map(|c| c.l()) else { return f64::INFINITY };
+    let Some(l) = elasticity.matrix().cholesky().map(|c| c.l()) else { return f64::INFINITY };
     (l.transpose() * sum * l).symmetric_eigenvalues().max()
 }

@@ -149,7 +149,7 @@ fn see_strains_before(solid: &mut Solid, bodies: &[u32], dt: f64) {
             }
             BlockLaw::Standard(law) => {
                 (0..cells.len())
-                    .for_each(|cell| law.stress[cell] = model.hooke.stress(step.strain_before(cells, cell)));
+                    .for_each(|cell| law.stress[cell] = model.elasticity.stress(step.strain_before(cells, cell)));
             }
             _ => {}
         }
@@ -164,7 +164,7 @@ fn energy_in_step(solid: &Solid, bodies: &[u32], dt: f64) -> f64 {
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
         let cells = (0..block.cells.len()).filter(|&cell| block.cells.volume[cell] > 0.0);
         let energy = cells.map(|cell| {
-            let stress = block.nominal_stress(cell, &model.hooke, step.strain_now(&block.cells, cell));
+            let stress = block.nominal_stress(cell, &model.elasticity, step.strain_now(&block.cells, cell));
             0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
         });
         energy.sum()

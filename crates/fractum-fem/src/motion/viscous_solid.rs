@@ -49,7 +49,7 @@ fn shape_factor(solid: &Solid, index: usize) -> f64 {
     let body = &solid.bodies[index].body;
     let geometry = Geometry { body, nodes: &solid.reference };
     let (corners, wave_speed) = (body.shape.node_count(), solid.p_wave_speed(index));
-    let stiffness = solid.bodies[index].hooke.lambda + 4.0 * solid.bodies[index].hooke.mu;
+    let stiffness = solid.bodies[index].elasticity.largest_trace();
     let of = |element: usize| {
         let (volume, gradients) = geometry.element(element);
         let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();

@@ -6,6 +6,7 @@ use fractum_kernels::damage::Softens;
 use fractum_math::Vec3;
 
 use crate::body::edges::BodyEdges;
+use crate::body::elasticity::Elasticity;
 use crate::body::{Body, Formulation};
 use crate::cells::cell::{Bundle, Class, Geometry};
 use crate::damage::edge::EdgeField;
@@ -30,7 +31,10 @@ impl BodyModel {
         chosen: Chosen,
         first_block: usize,
     ) -> Result<(Self, Vec<Block>), SolidError> {
-        let hooke = body.hooke();
+        if body.bedding.is_some() && body.damage.is_some() {
+            return Err(SolidError::BeddedDamage { body: body.name });
+        }
+        let elasticity = Elasticity::new(&body);
         let smoothed = body.formulation == Formulation::Smoothed;
         let geometry = Geometry { body: &body, nodes };
         let known = chosen.share.filter(|share| share.replication == Replication::Elements);
@@ -76,7 +80,7 @@ impl BodyModel {
         let alive = vec![true; body.elements.len()];
         let model = BodyModel {
             body,
-            hooke,
+            elasticity,
             viscosity: None,
             alive,
             volumes: OnceLock::new(),

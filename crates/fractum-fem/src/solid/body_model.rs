@@ -1,10 +1,10 @@
 use std::sync::OnceLock;
 
-use fractum_kernels::material::Hooke;
 use fractum_parallel::Exchange;
 
 use crate::body::Body;
 use crate::body::edges::BodyEdges;
+use crate::body::elasticity::Elasticity;
 use crate::cells::viscosity::BodyViscosity;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::StandardDamage;
@@ -15,7 +15,7 @@ use crate::divided::places::Places;
 #[derive(Clone, Debug)]
 pub(crate) struct BodyModel {
     pub(crate) body: Body,
-    pub(crate) hooke: Hooke,
+    pub(crate) elasticity: Elasticity,
     pub(crate) viscosity: Option<BodyViscosity>,
     pub(crate) alive: Vec<bool>,
     /// Volumes of the elements without load [m³], once something asks for them.

@@ -3,6 +3,7 @@
 use fractum_math::{Lane, Vec3};
 
 use crate::body::Kinematics;
+use crate::body::elasticity::{Elasticity, Linear};
 use crate::cells::block::{BLOCK_NODES, Cells, Scratch};
 use crate::cells::cell::Bundle;
 use crate::cells::kernel::{self, ElasticCells, ExpandingCells, Viscous};
@@ -104,9 +105,12 @@ impl Block {
         let start = measure.then_some(0.0);
         (self.viscous_power, self.inverted, self.expansion_work) = match law {
             BlockLaw::Elastic => {
-                let mut law = ElasticCells { hooke: model.hooke, energy: start };
-                let outcome = run(model, cells, scratch, &mut law, viscous);
-                self.energy = law.energy;
+                let Elasticity { hooke, bedded } = &model.elasticity;
+                let (outcome, energy) = match bedded {
+                    None => run_elastic(model, cells, scratch, *hooke, viscous, start),
+                    Some(stiffness) => run_elastic(model, cells, scratch, &**stiffness, viscous, start),
+                };
+                self.energy = energy;
                 outcome
             }
             BlockLaw::Edges(field) => {
@@ -137,7 +141,11 @@ impl Block {
     pub(crate) fn evaluate_elastic(&mut self, model: &BodyModel, displacement: &[Vec3]) {
         let Some(scratch) = &mut self.scratch else { return };
         scratch.load(&self.cells.nodes, displacement);
-        kernel::forces(&self.cells, scratch, &mut ElasticCells { hooke: model.hooke, energy: None });
+        let Elasticity { hooke, bedded } = &model.elasticity;
+        match bedded {
+            None => kernel::forces(&self.cells, scratch, &mut ElasticCells { elasticity: *hooke, energy: None }),
+            Some(own) => kernel::forces(&self.cells, scratch, &mut ElasticCells { elasticity: &**own, energy: None }),
+        };
     }
 
     /// Effective stress of the elements of a standard body with damage.
@@ -231,6 +239,20 @@ impl Block {
     }
 }
 
+/// Runs elastic cells as [`run`] does; returns its outcome, and the energy that they store where it is asked for [J].
+fn run_elastic<L: Linear>(
+    model: &BodyModel,
+    cells: &Cells,
+    scratch: &mut Scratch,
+    elasticity: L,
+    viscous: &mut ViscousCells,
+    energy: Option<f64>,
+) -> ((f64, Option<usize>, f64), Option<f64>) {
+    let mut law = ElasticCells { elasticity, energy };
+    let outcome = run(model, cells, scratch, &mut law, viscous);
+    (outcome, law.energy)
+}
+
 /// Runs the cells with the law, beyond their thermal strains where they have some; see [`run_law`]. Returns the work of the
 /// present change of temperatures too [J].
 fn run<L: kernel::CellLaw>(
@@ -260,7 +282,7 @@ fn run_law<L: kernel::CellLaw>(
     let corotational = model.body.kinematics == Kinematics::Corotational;
     match &model.viscosity {
         Some(viscosity) => {
-            let viscous = Viscous { corotational, viscosity, hooke: model.hooke, of_cells: viscous };
+            let viscous = Viscous { corotational, viscosity, elasticity: &model.elasticity, of_cells: viscous };
             kernel::viscous_forces(cells, scratch, law, viscous)
         }
         None if corotational => (0.0, kernel::corotational_forces(cells, scratch, law)),

@@ -282,13 +282,13 @@ impl Solid {
         &self.bodies[index].body
     }
 
-    /// Speed of a compression wave in a body, √((λ + 2μ)/ρ): in plane stress that of a plate [m/s].
+    /// Speed of a compression wave in a body, √((λ + 2μ)/ρ): in plane stress that of a plate, through beds that in the fastest direction [m/s].
     pub fn p_wave_speed(&self, index: usize) -> f64 {
-        let BodyModel { hooke, body, .. } = &self.bodies[index];
-        ((hooke.lambda + 2.0 * hooke.mu) / body.elastic.density).sqrt()
+        let BodyModel { elasticity, body, .. } = &self.bodies[index];
+        (elasticity.wave_modulus(body) / body.elastic.density).sqrt()
     }
 
-    /// Speed of a wave in a body; in plane stress that in a plate [m/s].
+    /// Speed of a wave in a body without beds; in plane stress that in a plate [m/s].
     pub fn wave_speed(&self, index: usize, wave: Wave) -> f64 {
         let (p, s) = (self.p_wave_speed(index), self.bodies[index].body.elastic.s_wave_speed());
         match wave {

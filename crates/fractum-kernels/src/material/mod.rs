@@ -1,5 +1,6 @@
 //! Elasticity, the equivalent stress that drives damage, and softening.
 
+mod bedding;
 mod criterion;
 mod damage_law;
 mod degradation;
@@ -7,6 +8,7 @@ mod elastic;
 mod softening;
 mod wave;
 
+pub use bedding::{Bedding, Stiffness};
 #[cfg(test)]
 pub(crate) use criterion::KINDS;
 pub use criterion::{Criterion, CriterionKind, equivalent_stresses};

@@ -2,6 +2,7 @@
 //!
 //! A new law is a new row. A failure names the row and the draw, which is the same on every machine.
 
+mod bedding;
 mod bond;
 mod contact;
 mod damage;
@@ -124,6 +125,9 @@ const LAWS: &[Row] = &[
     Row { law: "stiff interface, one mode to the end", holds: interface::stiff_proportional },
     Row { law: "stiff interface, any way", holds: interface::stiff_any_way },
     Row { law: "stiff interface, sliding under pressure", holds: interface::stiff_sliding },
+    Row { law: "bedding in space", holds: |draw| bedding::bedding(draw, None) },
+    Row { law: "bedding, plane strain", holds: |draw| bedding::bedding(draw, Some(Plane::Strain)) },
+    Row { law: "bedding, plane stress", holds: |draw| bedding::bedding(draw, Some(Plane::Stress)) },
 ];
 
 #[test]

@@ -1,7 +1,8 @@
 //! Supports on facets: absorbing boundaries and elastic foundations.
 //!
 //! An absorbing facet has the dashpots of Lysmer and Kuhlemeyer, *J. Eng. Mech. Div. ASCE* 95 (1969) 859-877: the traction
-//! −ρ c_P v_n n − ρ c_S v_t, which a plane wave at normal incidence does not feel as a border. An elastic one has springs,
+//! −ρ c_P v_n n − ρ c_S v_t, which a plane wave at normal incidence does not feel as a border; before beds −√(ρ Γ) v with Christoffel's
+//! tensor Γ of the normal, of which the same is true for all three waves. An elastic one has springs,
 //! −k_n u_n n − k_t u_t. Both are lumped at the nodes, a third of every facet (half of an edge in the plane) each.
 
 use fractum_fem::Solid;
@@ -14,13 +15,18 @@ use nalgebra::Matrix3;
 pub struct SupportedFacet {
     /// Its nodes; an edge in the plane repeats its second one.
     pub nodes: [u32; 3],
-    /// Unit normal.
-    pub normal: Vec3,
     /// Area [m²].
     pub area: f64,
-    /// What answers along the normal and across it, per area: ρ c_P and ρ c_S of dashpots [Pa s/m], stiffnesses of
-    /// springs [Pa/m].
-    pub along_and_across: [f64; 2],
+    /// What answers to motion per area: impedances of dashpots [Pa s/m], stiffnesses of springs [Pa/m].
+    pub answer: Matrix3<f64>,
+}
+
+impl SupportedFacet {
+    /// What answers along a unit normal and across it: ρ c_P and ρ c_S of dashpots [Pa s/m], stiffnesses of springs [Pa/m].
+    pub fn along_and_across(normal: Vec3, [along, across]: [f64; 2]) -> Matrix3<f64> {
+        let dyad = normal * normal.transpose();
+        dyad * along + (Matrix3::identity() - dyad) * across
+    }
 }
 
 /// Matrices at nodes, the sums over their facets.
@@ -36,10 +42,9 @@ struct NodeMatrices {
 impl NodeMatrices {
     fn new(facets: &[SupportedFacet]) -> Self {
         let mut shares: Vec<(u32, Matrix3<f64>)> = Vec::new();
-        for SupportedFacet { nodes, normal, area, along_and_across: [along, across] } in facets {
+        for SupportedFacet { nodes, area, answer } in facets {
             let corners = if nodes[1] == nodes[2] { 2 } else { 3 };
-            let dyad = normal * normal.transpose();
-            let share = (dyad * *along + (Matrix3::identity() - dyad) * *across) * (area / corners as f64);
+            let share = answer * (area / corners as f64);
             shares.extend(nodes[..corners].iter().map(|&node| (node, share)));
         }
         shares.sort_by_key(|share| share.0);
@@ -206,7 +211,8 @@ mod tests {
 
     #[test]
     fn facets_share_their_matrices_with_their_nodes() {
-        let facet = |nodes, normal| SupportedFacet { nodes, normal, area: 6.0, along_and_across: [4.0, 1.0] };
+        let answer = |normal| SupportedFacet::along_and_across(normal, [4.0, 1.0]);
+        let facet = |nodes, normal| SupportedFacet { nodes, area: 6.0, answer: answer(normal) };
         let own = NodeMatrices::new(&[facet([3, 1, 1], Vec3::x()), facet([1, 5, 7], Vec3::y())]);
         assert_eq!(own.nodes, [1, 3, 5, 7]);
         assert_eq!(own.matrix[1], Matrix3::from_diagonal(&Vec3::new(12.0, 3.0, 3.0)));

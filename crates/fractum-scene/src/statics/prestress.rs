@@ -38,7 +38,7 @@ pub(super) fn add_stress<const B: usize>(matrix: &mut BlockMatrix<B>, pairs: &[u
 /// Stress of a cell at the start times its volume [J].
 fn stress_at_start(solid: &Solid, cell: &SecantCell<'_>) -> Mat3 {
     let h = gradient(cell, &solid.initial_displacement);
-    (h + h.transpose()) * cell.mu + Mat3::identity() * (cell.lambda * h.trace())
+    cell.stress(&h)
 }
 
 /// Gradient of a field in a cell.

@@ -77,7 +77,7 @@ pub(super) fn add_solids<const B: usize>(matrix: &mut BlockMatrix<B>, pairs: &[u
 
 /// Square of the speed of the slowest wave over the size of the solids [1/s²].
 pub(super) fn transit_rate(solid: &Solid) -> f64 {
-    let speed = |body| solid.body(body).elastic.p_wave_speed();
+    let speed = |body| solid.body(body).bulk_wave_speed();
     let slowest = (0..solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
     (slowest / size(solid.reference.iter())).powi(2)
 }

@@ -150,7 +150,7 @@ fn period_as_it_is(scene: &mut Scene, time: f64) -> f64 {
         stiffness.first_period(scene, time)
     });
     found.ok().filter(|period| period.is_finite()).unwrap_or_else(|| {
-        let speed = |body| scene.solid.body(body).elastic.p_wave_speed();
+        let speed = |body| scene.solid.body(body).bulk_wave_speed();
         let slowest = (0..scene.solid.body_count()).map(speed).fold(f64::INFINITY, f64::min);
         CROSSINGS * size(scene.solid.reference.iter()) / slowest
     })

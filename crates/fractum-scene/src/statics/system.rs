@@ -85,14 +85,7 @@ pub(super) fn add_cells<const B: usize>(
         let mut place = pairs[cell.first_pair..].iter();
         for gi in cell.gradients {
             for (gj, &place) in cell.gradients.iter().zip(&mut place) {
-                let dot: f64 = (0..B).map(|a| gi[a] * gj[a]).sum();
-                let block = std::array::from_fn(|a| {
-                    std::array::from_fn(|b| {
-                        let diagonal = if a == b { dot } else { 0.0 };
-                        cell.lambda * gi[a] * gj[b] + cell.mu * (gi[b] * gj[a] + diagonal)
-                    })
-                });
-                matrix.add_at(place as usize, block);
+                matrix.add_at(place as usize, cell.between(gi, gj));
             }
         }
     });

@@ -219,6 +219,9 @@ impl Plan {
                 quantity(mean_size(scene, index, volume), "m")
             ),
         );
+        if let Some(beds) = &material.bedding {
+            self.describe_beds(&beds.value, body);
+        }
         if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
             let d = &damage.value;
             let zone = d.law.process_zone(material.young_modulus);

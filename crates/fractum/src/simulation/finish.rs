@@ -265,6 +265,9 @@ fn of_material(material: &Material) -> String {
         format!("E = {}", quantity(material.young_modulus, "Pa")),
         format!("Poisson's ratio {}", material.poisson_ratio),
     ];
+    if let Some(beds) = &material.bedding {
+        parts.push(format!("along the normal of its beds E' = {}", quantity(beds.value.law.young_modulus, "Pa")));
+    }
     if let Some(damage) = &material.damage {
         let law = &damage.value.law;
         parts.push(format!("tensile strength {}", quantity(law.tensile_strength, "Pa")));

@@ -3,6 +3,7 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
+use crate::body::elasticity::Elasticity;
 use crate::body::{Body, Formulation};
 use crate::cells::cell::Geometry;
 use crate::motion::time_step::element_frequency;
@@ -19,8 +20,9 @@ const WORTH_IT: f64 = 0.8;
 /// must take the short step, (1 + (m - 1) f)/m.
 pub(crate) fn fine_elements(nodes: &[Vec3], bodies: &[Body]) -> Option<Vec<Vec<bool>>> {
     let of_body = |body: &Body| -> Vec<f64> {
-        let (geometry, hooke) = (Geometry { body, nodes }, body.hooke());
-        (0..body.elements.len()).into_par_iter().map(|element| element_frequency(&geometry, &hooke, element)).collect()
+        let (geometry, elasticity) = (Geometry { body, nodes }, Elasticity::new(body));
+        let frequency = |element| element_frequency(&geometry, &elasticity, element);
+        (0..body.elements.len()).into_par_iter().map(frequency).collect()
     };
     let frequencies: Vec<Vec<f64>> = bodies.iter().map(of_body).collect();
     let highest = frequencies.iter().flatten().copied().fold(0.0, f64::max);
