@@ -148,7 +148,7 @@ fn a_pull_has_the_modulus_of_its_angle_to_the_beds() {
                     assert!((space / free - 1.0).abs() < 1e-9, "{what}: {space:e} of {free:e}");
                     let sheet = seen(ElementKind::T3, Plane::Stress);
                     assert!((sheet / free - 1.0).abs() < 1e-9, "{what}, plane stress: {sheet:e} of {free:e}");
-                    if normal.z != 0.0 && normal.z != 1.0 {
+                    if normal.z != 0.0 && normal != Vec3::z() {
                         continue;
                     }
                     // Nothing is stretched across the plane: what it would contract is held by a stress there.
@@ -203,7 +203,7 @@ fn wave_moduli(elastic: &Elastic, beds: &Bedding, cosine: f64) -> [f64; 3] {
     [0.5 * (sum + root), c66 * within + c44 * along, 0.5 * (sum - root)]
 }
 
-/// Accelerations of nodes far from the surface of a box through which a wave goes that is 24 elements long.
+/// Accelerations of nodes far from the surface of a box through which a wave goes that is 48 elements long.
 #[test]
 fn elements_see_all_three_waves_in_any_direction() {
     for formulation in FORMULATIONS {
@@ -219,7 +219,7 @@ fn elements_see_all_three_waves_in_any_direction() {
                 let mut solid = Solid::new(nodes, vec![body]).unwrap();
                 for wave in 0..3 {
                     assert!((moduli[wave] / expected[wave] - 1.0).abs() < 1e-9, "{moduli:?} {expected:?}");
-                    let (motion, number) = (motions.column(wave).into_owned(), 2.0 * PI / 4.0);
+                    let (motion, number) = (motions.column(wave).into_owned(), 2.0 * PI / 8.0);
                     for node in 0..solid.reference.len() {
                         let phase = number * direction.dot(&(solid.reference[node] - Vec3::repeat(0.5)));
                         solid.displacement[node] = motion * (1e-6 * phase.cos());
@@ -332,7 +332,8 @@ fn absorbing_facets_let_all_waves_along_their_normal_pass() {
             scene.step(false).unwrap();
         }
         let back = in_the_middle(&scene.solid) / start;
-        assert!(back < 0.01, "wave {wave}: {back} comes back");
+        // Two per cent of the speed are 0.04 % of the energy.
+        assert!(back < 0.02, "wave {wave}: {back} comes back");
     }
 }
 
@@ -430,7 +431,7 @@ fn steps_are_stable_whatever_the_direction_of_the_beds() {
                     let (bound, found) = (motion::stable_step_bound(&solid), solid.stable_step());
                     let what = format!("{normal:?} {shape:?} {plane:?} {formulation:?} {young_modulus}");
                     let ratio = bound.frequency / (found.frequency / 1.02);
-                    assert!(ratio > 1.0 - 1e-9 && ratio < 2.0, "{what}: {ratio}");
+                    assert!(ratio > 1.0 - 1e-9 && ratio < 2.5, "{what}: {ratio}");
                     for node in 0..solid.reference.len() {
                         let axes = if shape == ElementKind::T4 { 3 } else { 2 };
                         let speed = |axis: usize| noise(7 * node + axis + index);
@@ -467,7 +468,7 @@ fn beds_that_tumble_keep_the_balance_and_their_bits() {
                     let waves = Vec3::new((60.0 * p.y).sin(), (50.0 * p.z).sin(), (40.0 * p.x).sin());
                     solid.velocity[node] = Vec3::new(300.0, -500.0, 200.0).cross(&p) + waves * 5.0;
                 }
-                let mut settings = settings(4e-3, 1e-2);
+                let mut settings = settings(1e-3, 1e-2);
                 settings.stiffness_time = stiffness_time;
                 let mut scene = scene_of(solid, Vec::new(), Vec::new(), settings);
                 while !scene.is_finished() {

@@ -26,7 +26,7 @@ impl Measure for WaveSpeed {
     const KEY: &'static str = "wave_speed";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].wave_speed", K::Table, "", "Speed of a wave, for comparison, in m/s; in plane stress that in a plate"),
+        key("probes[].wave_speed", K::Table, "", "Speed of a wave, for comparison, in m/s; in plane stress that in a plate. Not in bodies with beds"),
         key("probes[].wave_speed.body", K::Text, "required", "Name of a solid body"),
         key("probes[].wave_speed.wave", K::Choice(names::<Wave>), "required", "Compression wave, shear wave, or Rayleigh's surface wave, which a crack in tension cannot outrun"),
     ];
