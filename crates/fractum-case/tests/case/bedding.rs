@@ -39,7 +39,7 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "normal = [0, 0, 2], ",
             "",
-            "8:1: materials.steel.bedding.normal is missing; expected an axis such as \"x\" or \"-y\", or three numbers",
+            "8:11: materials.steel.bedding.normal is missing; expected an axis such as \"x\" or \"-y\", or three numbers",
         ),
         (
             "[0, 0, 2]",
@@ -75,7 +75,7 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "normal = [0, 0, 2]",
             "dip = \"30 deg\"",
-            "8:1: materials.steel.bedding.dip_direction is missing; expected an angle such as \"35 deg\"",
+            "8:11: materials.steel.bedding.dip_direction is missing; expected an angle such as \"35 deg\"",
         ),
         (
             "normal = [0, 0, 2]",
@@ -85,7 +85,7 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "_normal = 0.2 }",
             "_normal = 0.2 }\ndamage = { tensile_strength = 1e7, fracture_energy = 1e4 }",
-            "8:1: materials.steel.bedding beside damage, which does not know the direction of beds; expected one of the two tables; remove bedding or \
+            "8:11: materials.steel.bedding beside damage, which does not know the direction of beds; expected one of the two tables; remove bedding or \
              damage; a bed that may open can be an interface",
         ),
         (
