@@ -4,6 +4,7 @@ mod bars;
 mod bedding;
 mod crack_pressure;
 mod element;
+mod excavation;
 mod fracture_balance;
 mod gas;
 mod interfaces;

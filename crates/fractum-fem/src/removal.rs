@@ -1,6 +1,6 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 
 use crate::body::Formulation;
 use crate::body::elasticity::Elasticity;
@@ -61,6 +61,47 @@ pub fn take_out(solid: &mut Solid, dt: f64, removed: &[(usize, u32)]) -> f64 {
         settle(solid, dt, &touched, &stored);
         energy -= step_energy(solid, body, dt, &touched);
         solid.with_neighbours(|neighbours, solid| neighbours.exchange_settled(solid, body, &touched));
+    }
+    energy
+}
+
+/// Takes a whole body out with its mass; returns the energy that goes with it [J]: what its cells store, and ½ m v² of what the nodes lose.
+///
+/// A node of no other body keeps its mass and stops. Others keep their velocity; what the body did to them by its stress and weight is
+/// missing from then on.
+///
+/// - `dt`: time since the forces were last computed, in which the nodes moved with their present velocities; 0 at rest [s]
+pub fn take_out_body(solid: &mut Solid, dt: f64, body: usize) -> f64 {
+    let alive = (0..).zip(&solid.bodies[body].alive).filter(|(_, alive)| **alive);
+    let elements: Vec<(usize, u32)> = alive.map(|(element, _)| (body, element)).collect();
+    let energy = take_out(solid, dt, &elements);
+    let corners = solid.bodies[body].body.shape.node_count();
+    let touched = elements.iter().flat_map(|&(_, e)| solid.bodies[body].body.elements[e as usize][..corners].to_vec());
+    let mut touched: Vec<u32> = touched.collect();
+    touched.sort_unstable();
+    touched.dedup();
+    energy + leave_mass(solid, &touched)
+}
+
+/// Leaves nodes the mass of the elements that are there; returns the kinetic energy that they lose [J].
+fn leave_mass(solid: &mut Solid, nodes: &[u32]) -> f64 {
+    let mut left = Vec::new();
+    for (body, model) in solid.bodies.iter().enumerate() {
+        let volumes = solid.element_volumes(body);
+        let alive = (0..).zip(volumes).zip(&model.alive).filter(|(_, alive)| **alive);
+        left.extend(alive.map(|((element, volume), _)| (body, element, model.body.elastic.density * volume)));
+    }
+    let mass = solid.lumped(left.into_iter());
+    let mut energy = 0.0;
+    for &node in nodes {
+        let (node, left) = (node as usize, mass[node as usize]);
+        let lost = solid.mass[node] - left;
+        energy += 0.5 * lost * solid.velocity[node].norm_squared();
+        if left > 0.0 {
+            (solid.mass[node], solid.inverse_mass[node]) = (left, 1.0 / left);
+        } else {
+            solid.velocity[node] = Vec3::zeros();
+        }
     }
     energy
 }
@@ -254,7 +295,6 @@ fn touched_edges(model: &BodyModel, elements: &[u32]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use fractum_kernels::material::{DamageLaw, Elastic};
-    use fractum_math::Vec3;
     use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
     use proptest::prelude::*;
 

@@ -9,7 +9,7 @@ use crate::history::Table;
 pub struct HistoryColumns {
     /// Particles, bonded or loose.
     pub particles: bool,
-    /// A domain that pieces may leave.
+    /// A domain that pieces may leave, or stages that take bodies out.
     pub domain: bool,
     /// Heat.
     pub heat: bool,
@@ -75,7 +75,7 @@ const COUNTS: [Column; 3] = [
 /// After the energies of bonds.
 const BONDS: [Column; 1] = [column("broken_bonds", "1", |row| row.counts.broken_bonds as f64)];
 
-/// What has left the domain.
+/// What has left the run.
 const LEFT: [Column; 5] = [
     column("left_pieces", "1", |row| row.left().pieces as f64),
     column("left_mass", "kg", |row| row.left().mass),

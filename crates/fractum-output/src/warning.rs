@@ -85,6 +85,8 @@ codes! {
     Suction = "suction",
     /// Coordinates too far from the origin for small displacements.
     FarFromOrigin = "far-from-origin",
+    /// A place that is measured and leaves with a body.
+    Excavated = "excavated",
     /// A body much smaller than its process zone.
     ProcessZone = "process-zone",
     /// An interface that rubs in motion without damping.

@@ -17,7 +17,7 @@ const UNSTABLE_RATIO: f64 = 20.0;
 const VISIBLE_CHANGE: f64 = 5e-3;
 
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
-const IN_SITU_ROUND_OFF: f64 = 1e-9;
+pub(crate) const IN_SITU_ROUND_OFF: f64 = 1e-9;
 
 /// The ledger of a state of equilibrium.
 pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
@@ -29,6 +29,7 @@ pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Friction] = books.friction;
     ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
     ledger[EnergyKind::TimeStep] = books.time_step;
+    ledger[EnergyKind::Left] = books.left;
     book_interfaces(ledger, books, interfaces);
     ledger.update_maxima();
     if ledger.residual().is_finite() {

@@ -142,20 +142,25 @@ fn take_leave(scene: &mut Scene, leaves: &[bool], piece: &[u32], dt: f64) {
     energy += in_interfaces;
     scene.books.interfaces -= in_interfaces;
     scene.removals.left.elements += elements.len();
+    scene.books.left += energy;
+    let_go(scene, leaves, &elements);
+    if !elements.is_empty() && !scene.settings.time_step.element_bound {
+        scene.frequencies.stable = scene.solid.stable_step();
+    }
+}
+
+/// Has heat and contact do without nodes and elements that have left.
+pub(crate) fn let_go(scene: &mut Scene, leaves: &[bool], elements: &[(usize, u32)]) {
     if !elements.is_empty() {
         heat_loses_elements(scene);
     }
-    scene.books.left += energy;
     let born = scene.debris.state().nodes.clone();
     scene.debris.let_leave(&scene.solid, leaves);
     let Scene { solid, debris, contacts, bonded, removals, .. } = scene;
     let gone: Vec<u32> = removals.left.nodes(leaves.len()).collect();
-    contacts.let_nodes_leave(solid, debris, bonded.particles.len(), &born, &gone, &elements);
+    contacts.let_nodes_leave(solid, debris, bonded.particles.len(), &born, &gone, elements);
     for ground in &mut scene.shape_contacts {
         ground.candidates.retain(|candidate| !leaves[candidate.node as usize]);
     }
     update_wall_frequency(scene);
-    if !elements.is_empty() && !scene.settings.time_step.element_bound {
-        scene.frequencies.stable = scene.solid.stable_step();
-    }
 }

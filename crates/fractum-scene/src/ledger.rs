@@ -50,7 +50,7 @@ pub enum EnergyKind {
     Gas,
     /// Enthalpy of the gas that has leaked to the outside.
     GasLeaked,
-    /// Energy of pieces that have left the domain of the run.
+    /// Energy of pieces that have left the domain of the run, and of bodies that a stage took out.
     Left,
 }
 
@@ -122,7 +122,7 @@ impl EnergyKind {
         entry(EnergyKind::GasSupplied, "gas_supplied", "Gas put in", EnergyRole::Supplied),
         entry(EnergyKind::Gas, "gas", "Gas", EnergyRole::Stored),
         entry(EnergyKind::GasLeaked, "gas_leaked", "Gas leaked", EnergyRole::Spent),
-        entry(EnergyKind::Left, "left", "Left the domain", EnergyRole::Spent),
+        entry(EnergyKind::Left, "left", "Left the run", EnergyRole::Spent),
     ];
 
     const fn entry(self) -> &'static Entry {

@@ -8,6 +8,7 @@ use crate::conditions::{Loads, Population, Supports, SurfaceSupports};
 use crate::contacts::{Contacts, NodesOnShape};
 use crate::coupling::{Debris, Ties};
 use crate::domain::{Domain, Left};
+use crate::excavation::Excavation;
 use crate::fragment::{Fragment, joined, linked, marked_pieces, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
@@ -52,6 +53,8 @@ pub(crate) struct Optional {
     pub(crate) heat: Option<Box<Heat>>,
     /// Faces along which the nodes of solids are doubled.
     pub(crate) interfaces: Interfaces,
+    /// What leaves when this scene is a stage that begins.
+    pub(crate) excavation: Option<Box<Excavation>>,
     /// Natural vibrations, once they have been looked for.
     pub(crate) modes: Option<Box<Modes>>,
     /// What was noticed beyond the models of the scene.

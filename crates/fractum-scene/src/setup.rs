@@ -1,4 +1,4 @@
-//! Sets up a scene before its first step, and what a stage changes.
+//! Sets up a scene before its first step.
 
 use fractum_fem::{Solid, motion};
 
@@ -93,17 +93,6 @@ impl Scene {
         self.optional.interfaces = interfaces;
         self.clock = Clock::new(next_dt(&self, 0.0));
         self
-    }
-
-    /// Goes on with the supports, loads and settings of another scene of the same solids.
-    pub fn begin_stage(&mut self, next: Scene) {
-        (self.supports, self.settings) = (next.supports, next.settings);
-        let before = std::mem::replace(&mut self.loads, next.loads);
-        self.loads.follow(before, &self.solid);
-        self.optional.surface_supports.gather(&self.solid);
-        self.books.absorbed += self.optional.surface_supports.absorbed();
-        self.optional.surface_supports = next.optional.surface_supports;
-        self.removals.domain = next.removals.domain;
     }
 
     /// Takes everything that overlaps as it stands, before the first step: it gives no force, and touches no nearer than now until

@@ -4,6 +4,7 @@ mod beds;
 mod bodies;
 mod cost;
 mod estimate;
+mod excavation;
 mod gauges;
 mod heat;
 mod interfaces;
@@ -118,6 +119,9 @@ impl Plan {
         let mut start = case.solver.end;
         for (case, built) in later {
             plan.add("stage", &case.source.stage);
+            for told in excavation::told(case, &built.scene) {
+                plan.add("excavation", told);
+            }
             plan.describe_conditions(case, mesh, &built.scene);
             plan.describe_solver(case, built, case.solver.end - start);
             start = case.solver.end;

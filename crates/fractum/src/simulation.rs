@@ -295,14 +295,16 @@ impl Simulation {
             self.end.get_or_insert(End::Finished(why));
             return Ok(());
         };
-        let text = format!("{}: stage \"{}\"", self.instant(self.time()), case.source.stage);
+        let leaving = case.excavation.iter().flat_map(|excavation| &excavation.bodies);
+        let leaving: String = leaving.map(|name| format!(", body \"{}\" leaves", name.value)).collect();
+        let text = format!("{}: stage \"{}\"{leaving}", self.instant(self.time()), case.source.stage);
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();
         ranks::gather_all(&mut self.scene);
         // From the state at t = 0, as a resumed run does.
         self.solver = self.ranks.together(Solver::new(&built.scene, &built, &mut self.phases))?;
-        self.scene.begin_stage(built.scene);
+        self.scene.begin_stage(built.scene, was_moving);
         self.solver.take_over(&mut self.scene, was_moving);
         self.recorder.set_probes(built.probes);
         self.case = Arc::new(case);

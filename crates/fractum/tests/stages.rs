@@ -1,6 +1,7 @@
 //! Stages: a bar pulled at rest, then released.
 
 use std::fs;
+use std::path::Path;
 
 use crate::common::{Workplace, checkpoints, history, mesh_bytes, run, signal, summary, wait_for_checkpoint};
 use fractum_math::Vec3;
@@ -154,4 +155,92 @@ fn warnings_of_a_later_stage_are_told_once() {
     for words in ["stages[1].solver.step = 12 µs is above the stable step", "loads[0].pressure is 8 Pa at most"] {
         assert_eq!(ended.stdout.matches(words).count(), 1, "{words}: {}", ended.stdout);
     }
+}
+
+/// A hole that is taken out of a quarter of a plate in motion.
+fn hole(changes: &[(&str, &str)]) -> Workplace {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = fs::read_to_string(root.join("cases/excavation/hole-motion.toml")).unwrap();
+    let text = text.replace("../../meshes/excavation-plane/hole.msh", "bar.msh");
+    let text = text.replace("[output]\n", "[output]\ncheckpoint = { every = \"1 ms\" }\n");
+    let text = changes.iter().fold(text, |text, (from, to)| {
+        assert!(text.contains(from), "{from}");
+        text.replacen(from, to, 1)
+    });
+    Workplace::with_mesh(&text, &fs::read(root.join("meshes/excavation-plane/hole.msh")).unwrap())
+}
+
+#[test]
+fn excavation_goes_on_with_the_same_bits_on_threads_and_after_a_stop() {
+    let place = hole(&[("end = \"0.6 ms\"", "end = \"0.3 ms\"")]);
+    let plan = place.fractum(&["check", "case.toml"]);
+    assert_eq!(plan.code, Some(0), "{}", plan.stderr);
+    for words in ["body \"core\" leaves: ", "what they bore fades over 200 µs"] {
+        assert!(plan.stdout.contains(words), "{words}: {}", plan.stdout);
+    }
+    let whole = run(&place, "whole", "1");
+    assert!(whole["energy"]["left"].as_f64().unwrap() > 0.0, "{}", whole["energy"]);
+    assert!(whole["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-6, "{}", whole["energy"]);
+    for threads in ["2", "7"] {
+        assert_eq!(whole["state_hash"], run(&place, &format!("on-{threads}"), threads)["state_hash"]);
+    }
+    let arguments = ["run", "case.toml", "--threads", "1", "--quiet", "-o", "stopped"];
+    let results = place.path("stopped");
+    let mut code = None;
+    for name in ["INT", "KILL", "INT"] {
+        let saved = checkpoints(&results).last().copied().unwrap_or(0);
+        let more: &[&str] = if results.exists() { &["--resume"] } else { &[] };
+        let mut one = place.start(&[&arguments[..], more].concat());
+        wait_for_checkpoint(&mut one, &results, saved + 200);
+        signal(&one, name);
+        code = one.wait().unwrap().code();
+        if code == Some(0) {
+            break;
+        }
+    }
+    if code != Some(0) {
+        assert!(place.start(&[&arguments[..], &["--resume"]].concat()).wait().unwrap().success());
+    }
+    assert_eq!(whole["state_hash"], summary(&place, "stopped")["state_hash"]);
+    let rows = |folder: &str| fs::read_to_string(place.path(folder).join("history.csv")).unwrap();
+    assert_eq!(rows("whole"), rows("stopped"));
+}
+
+#[test]
+fn wrong_excavation_is_explained() {
+    let excavate = "excavate = [\"core\"]";
+    let before = "name = \"before\"\n";
+    let third = "[[stages]]\nname = \"late\"\nexcavate = [\"core\"]\nsolver = { kind = \"explicit\", end = \"1 ms\" }\n\n[output]";
+    let held = "[[supports]]\nname = \"in the core\"\nwhere = \"hypot(x, y) < 5 mm\"\nfix = \"xy\"\n[in_situ]";
+    let pushed = "[[loads]]\nname = \"inside\"\nwhere = \"hypot(x, y) < 5 mm\"\nforce = { x = \"1 N\" }\n[in_situ]";
+    for (from, to, words) in [
+        (excavate, "excavate = [\"cor\"]", "did you mean \"core\"?"),
+        (excavate, "excavate = \"core\"", "expected a list of names of solid bodies"),
+        (excavate, "excavate = [\"core\", \"core\"]", "has left in stage \"hole\""),
+        (excavate, "excavate = [\"rock\", \"core\"]", "one solid at least that stays"),
+        (excavate, "release_share = 0.5", "in a stage that takes nothing out"),
+        (excavate, "", "has no effect in a stage in which nothing is released"),
+        (excavate, "excavate = [\"core\"]\nrelease_share = 1.5", "above 0 and at most 1"),
+        ("release = \"0.2 ms\"", "release = \"2 ms\"", "no more than the stage lasts"),
+        ("release = \"0.2 ms\"", "release = \"-1 ms\"", "release"),
+        ("release = \"0.2 ms\"", "release = \"2 mm\"", "a time"),
+        ("release = \"0.2 ms\"", "releas = \"2 ms\"", "did you mean release?"),
+        (before, "name = \"before\"\nexcavate = [\"core\"]\n", "in the first stage"),
+        ("[output]", third, "has left in stage \"hole\""),
+        ("[in_situ]", held, "have left in stage \"hole\""),
+        ("[in_situ]", pushed, "have left in stage \"hole\""),
+        (
+            "[in_situ]",
+            "[[loads]]\ngroup = \"outer\"\npressure = \"1 MPa\"\nin_cracks = true\n[in_situ]",
+            "what leaves would count as cracks",
+        ),
+    ] {
+        let ended = hole(&[(from, to)]).fractum(&["check", "case.toml"]);
+        assert!(ended.code == Some(1) && ended.stderr.contains(words), "{to}: {words}: {ended:?}");
+    }
+    let probe =
+        "[[probes]]\nname = \"gone\"\ndisplacement = { group = \"core\", along = \"x\" }\n[[probes]]\nname = \"crown\"";
+    let ended = hole(&[("[[probes]]\nname = \"crown\"", probe)]).fractum(&["check", "case.toml"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.contains("[excavated]") || ended.stderr.contains("[excavated]"), "{ended:?}");
 }

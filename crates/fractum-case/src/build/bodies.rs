@@ -27,6 +27,8 @@ pub(super) struct Part<'a> {
 pub(super) struct Numbering {
     pub(super) scene_node: Vec<u32>,
     pub(super) positions: Vec<Vec3>,
+    /// Nodes of the scene that have left with their bodies before the present stage, ascending.
+    pub(super) gone: Vec<u32>,
 }
 
 impl Numbering {
@@ -38,7 +40,17 @@ impl Numbering {
         let mut scene_node = vec![u32::MAX; nodes.len()];
         (0..).zip(&order).for_each(|(new, &old)| scene_node[old as usize] = new);
         let positions = order.iter().map(|&old| nodes[old as usize]).collect();
-        (Numbering { scene_node, positions }, order)
+        (Numbering { scene_node, positions, gone: Vec::new() }, order)
+    }
+
+    /// The same with the nodes that have left.
+    pub(super) fn whole(&self) -> Self {
+        Numbering { gone: Vec::new(), ..self.clone() }
+    }
+
+    /// Whether a node of the scene has left.
+    pub(super) fn has_left(&self, node: u32) -> bool {
+        self.gone.binary_search(&node).is_ok()
     }
 
     /// Some nodes of the mesh by their numbers in the scene, each once, ascending.
@@ -304,12 +316,15 @@ pub(super) fn set_initial_velocity(context: &Context<'_>, solid: &mut Solid, par
 }
 
 /// Outward facets of all solids (edges of plane bodies repeat their second node), in scene nodes.
-pub(super) fn boundary(context: &Context<'_>, parts: &[Part], numbering: &Numbering) -> Vec<[u32; 3]> {
+///
+/// - `gone`: numbers of parts that have left
+pub(super) fn boundary(context: &Context<'_>, parts: &[Part], numbering: &Numbering, gone: &[usize]) -> Vec<[u32; 3]> {
     let scene = |n: u32| numbering.scene_node[n as usize];
     if let Some(division) = context.division {
         return division.boundary.all.iter().map(|facet| facet.map(scene)).collect();
     }
-    let elements: Vec<[u32; 4]> = parts.iter().flat_map(|part| element_nodes(context, part)).collect();
+    let there = parts.iter().enumerate().filter(|(index, _)| !gone.contains(index));
+    let elements: Vec<[u32; 4]> = there.flat_map(|(_, part)| element_nodes(context, part)).collect();
     if parts.iter().all(|part| part.shape == fem::ElementKind::T4) {
         topology::boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes.map(scene)).collect()
     } else {

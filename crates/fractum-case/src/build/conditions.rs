@@ -119,7 +119,7 @@ impl Context<'_> {
     }
 
     /// Outward facets of a group, or all without one, of which all nodes fulfil the condition.
-    fn facets(&self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
+    pub(super) fn facets(&self, on: &Selection, numbering: &Numbering, surface: &Surface) -> Vec<[u32; 3]> {
         let mut facets = match &on.group {
             Some(group) => self.facets_in_file(group, numbering, surface),
             None => surface.facets.to_vec(),

@@ -41,7 +41,12 @@ pub(super) fn in_situ_loads(
 ) -> Vec<Load> {
     let Some(stress) = &context.case.in_situ else { return Vec::new() };
     for group in &stress.groups {
-        on.extend(context.selected_facets(&Selection::of_group(group.clone()), numbering, surface));
+        let on_group = Selection::of_group(group.clone());
+        on.extend(match numbering.gone.is_empty() {
+            true => context.selected_facets(&on_group, numbering, surface),
+            // All facets of the group may have left.
+            false => context.facets(&on_group, numbering, surface),
+        });
     }
     on.sort_unstable();
     on.dedup();
@@ -49,8 +54,10 @@ pub(super) fn in_situ_loads(
     if on.is_empty() && context.diagnostics.is_empty() {
         context.error(&stress.place, " acts on no facet", "absorbing or elastic supports, or groups of facets");
     }
-    check_weight(context, &stress.place, &field, solid);
-    if context.diagnostics.is_empty() {
+    if numbering.gone.is_empty() {
+        check_weight(context, &stress.place, &field, solid);
+    }
+    if context.diagnostics.is_empty() && numbering.gone.is_empty() {
         check_in_situ_supports(context, &field, solid, numbering);
     }
     if context.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }

@@ -8,6 +8,7 @@ mod conditions;
 mod contacts;
 mod division;
 mod doubts;
+mod excavation;
 mod gas;
 mod gauges;
 mod heat;
@@ -153,8 +154,8 @@ pub fn build_shared_scene(
     facets: Vec<PreparedFacets>,
     (exchange, division): (Option<Arc<dyn Exchange>>, Option<&SolidDivision>),
 ) -> Result<BuiltScene, Diagnostics> {
-    // The equilibrium with which in-situ stress begins is found by every rank.
-    let exchange = exchange.filter(|_| case.in_situ.is_none());
+    // The equilibrium with which in-situ stress begins is found by every rank, and bodies leave as wholes.
+    let exchange = exchange.filter(|_| case.in_situ.is_none() && !case.excavates());
     let (particle_sets, flat_faces, weibull, diagnostics) = Default::default();
     let mut context = Context { case, mesh, exchange, division, particle_sets, flat_faces, weibull, diagnostics };
     precheck::check_before_particles(&mut context);
@@ -175,7 +176,7 @@ impl<'a> Context<'a> {
         self.diagnostics.push(Diagnostic::error(place, found).expected(expected));
     }
 
-    fn build(&mut self, prepared: Vec<PreparedBody>, facets: Vec<PreparedFacets>) -> Option<BuiltScene> {
+    fn build(&mut self, prepared: Vec<PreparedBody>, facets_of_tools: Vec<PreparedFacets>) -> Option<BuiltScene> {
         self.without_mistakes()?;
         let taken = ties::taken(self, &prepared);
         let mut bonded = self.bonded(prepared)?;
@@ -183,7 +184,7 @@ impl<'a> Context<'a> {
         ties::take_out(self, &mut parts, &taken);
         self.without_mistakes()?;
         let numbering = bodies::number_nodes(self, &parts);
-        let mut boundary = bodies::boundary(self, &parts, &numbering);
+        let mut boundary = bodies::boundary(self, &parts, &numbering, &[]);
         let inner = interfaces::inner_facets(self, &numbering);
         boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
         let mut solid = self.solid(&parts, &numbering, &boundary)?;
@@ -199,8 +200,12 @@ impl<'a> Context<'a> {
                 .for_each(|(body, facets)| neighbours::note_skin(&mut solid, body, facets));
         }
         let surface = Surface::new(&boundary, &parts, &numbering.positions);
+        let left = excavation::what_is_left(self, &parts, &numbering);
+        let (loaded, facets) = left.as_ref().map_or((&numbering, &boundary), |(numbering, facets)| (numbering, facets));
+        let bare = Surface::new(facets, &parts, &numbering.positions);
+        warnings.extend(excavation::doubts(self, loaded));
         let (supports, surface_supports, loads) =
-            self.supports_and_loads(&solid, &parts, &numbering, &surface, &boundary_of_parts)?;
+            self.supports_and_loads(&solid, &parts, loaded, &bare, &boundary_of_parts)?;
         let statics = statics::statics(self, &solid, &numbering);
         let ties = ties::ties(self, &solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
         // Facets under tied particles matter to what breaks off only.
@@ -217,7 +222,7 @@ impl<'a> Context<'a> {
         let surfaces = parts.iter().map(|part| part.body.surface(&self.case.materials)).collect();
         let debris = Debris::new(&solid, surfaces);
         let surface_nodes = nodes_of(&boundary);
-        let rigid_bodies = contacts::rigid_bodies(self, facets);
+        let rigid_bodies = contacts::rigid_bodies(self, facets_of_tools);
         let shapes = contacts::shape_contacts(&rigid_bodies);
         let scene = Scene::new(solid, supports, loads, debris, shapes, &surface_nodes, self.settings())
             .with_bonded(bonded)
@@ -238,6 +243,7 @@ impl<'a> Context<'a> {
         )?;
         let scene = heat::with_heat(self, scene, &parts, &numbering, &surface)?;
         let scene = self.made_ready(scene, &probes, &mut warnings)?;
+        let scene = excavation::with_excavation(self.case, scene, &parts);
         Some(BuiltScene {
             statics: statics.filter(|_| statics::is_held(self, &scene)),
             scene,
@@ -340,7 +346,9 @@ impl<'a> Context<'a> {
                 scene.contacts.watch(contact);
             }
         }
-        if let Some(stress) = &self.case.in_situ
+        // Later stages begin with the state of those before.
+        let is_first = self.case.excavation.is_none() || !self.case.later.is_empty();
+        if let Some(stress) = self.case.in_situ.as_ref().filter(|_| is_first)
             && let Err(error) = scene.start_at_rest()
         {
             self.error(&stress.place.clone(), format!(": {error}"), "");
@@ -397,6 +405,16 @@ impl<'a> Context<'a> {
 
     /// Nodes of solid bodies that are meant, in the scene's numbering, ascending.
     fn selected_nodes(&mut self, on: &Selection, numbering: &Numbering) -> Vec<u32> {
+        if !numbering.gone.is_empty() {
+            let whole = self.selected_nodes(on, &numbering.whole());
+            let left: Vec<u32> = whole.iter().copied().filter(|&node| !numbering.has_left(node)).collect();
+            if let (true, true, Some(place)) = (left.is_empty(), !whole.is_empty(), on.place()) {
+                let found =
+                    format!("= \"{}\": all its nodes have left in stage \"{}\"", on.label(), self.case.source.stage);
+                self.error(place, found, "stages = [...] with those before alone");
+            }
+            return left;
+        }
         let nodes = match &on.group {
             Some(group) => self.group_nodes(group, numbering),
             None => (0..numbering.positions.len() as u32).collect(),

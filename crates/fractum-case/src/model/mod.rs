@@ -3,6 +3,7 @@
 mod body;
 mod bonded;
 mod boundary;
+mod excavation;
 mod gas;
 mod gauges;
 mod heat;
@@ -29,6 +30,7 @@ use fractum_scene::EnergyKind;
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource};
 pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
+pub use excavation::Excavation;
 pub use gas::{Gas, GasHole, GasLaw};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
@@ -75,6 +77,8 @@ pub struct Case {
     pub in_situ: Option<InSitu>,
     /// Gas and heat.
     pub flows: Flows,
+    /// What leaves as the stage begins, where stages take something out.
+    pub excavation: Option<Excavation>,
     /// Damping of the solids.
     pub damping: Damping,
     /// Time and its steps.
@@ -230,6 +234,11 @@ impl Case {
         let pulse =
             |load: &Load| matches!(&load.kind, LoadKind::Pressure { pressure, .. } if pressure.value.is_pulse());
         self.solver.kind == SolverKind::Explicit && (self.flows.gas.is_some() || self.loads.iter().any(pulse))
+    }
+
+    /// Whether a stage takes bodies out.
+    pub fn excavates(&self) -> bool {
+        self.excavation.is_some()
     }
 
     /// Doubtful choices that do not keep the case from running.

@@ -4,6 +4,7 @@ mod bedding;
 mod bodies;
 mod bonded;
 mod boundary;
+mod excavation;
 mod expect;
 mod firing;
 mod fracture;
@@ -192,6 +193,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
     let in_situ = in_situ::read(&table);
+    let excavation = excavation::read(&table);
     let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);
     let solver = solver::read(&table, &probes.list, bodies.as_deref());
@@ -225,6 +227,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         loads: loads?,
         in_situ: in_situ?,
         flows: Flows { gas: gas?, heat: heat? },
+        excavation: excavation?,
         damping,
         solver: solver?,
         probes: probes.list.into_iter().map(|probe| probe.probe).collect::<Option<_>>()?,

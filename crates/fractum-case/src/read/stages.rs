@@ -1,6 +1,7 @@
 //! `[[stages]]`: a tree per stage, with its solver and with the supports and loads that act in it.
 
 use super::super::tree::{Entry, Node, Value};
+use super::excavation;
 use crate::model::{Body, BodyKind, Case, SolverKind};
 use crate::reader::{Reader, Table};
 use crate::{Diagnostic, Spanned};
@@ -28,6 +29,9 @@ pub(super) fn split(reader: &Reader, mut root: Node) -> Vec<(String, Node)> {
             take(&mut tree, "output");
         }
         if let (Some(solver), Value::Table(entries)) = (take(&mut stage, "solver"), &mut tree.value) {
+            // What the stage itself says stays in its list, which has no other.
+            let own = Node { value: Value::Array(vec![stage.clone()]), ..stage.clone() };
+            entries.push(Entry { name: "stages".to_owned(), key_place: stage.place.clone(), node: own });
             entries.push(Entry { name: "solver".to_owned(), key_place: solver.place.clone(), node: solver });
         }
         trees.push((name.value.clone(), tree));
@@ -115,6 +119,7 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
             reader.note(Diagnostic::error(&case.place, found).remedy("one clock runs through all stages"));
         }
     }
+    excavation::join(reader, &mut cases);
     if cases.len() > 1 {
         let particles = |body: &&Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
         for body in cases[0].bodies.iter().filter(particles) {

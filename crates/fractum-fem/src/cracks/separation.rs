@@ -52,7 +52,8 @@ impl Separation {
     /// What has separated so far.
     pub fn of(solid: &Solid) -> Self {
         let mut elements = Vec::new();
-        for body in 0..solid.body_count() {
+        // A body that is gone as a whole has no cracks.
+        for body in (0..solid.body_count()).filter(|&body| solid.alive(body).contains(&true)) {
             let removed = (0u32..).zip(solid.alive(body)).filter(|(_, alive)| !**alive).map(|(element, _)| element);
             let middle = |element| solid.element_middle(body, element);
             elements.extend(removed.map(|element| SeparatedElement { body, element, middle: middle(element) }));

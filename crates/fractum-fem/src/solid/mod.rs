@@ -38,7 +38,7 @@ pub struct Solid {
     pub velocity: Vec<Vec3>,
     /// Force at tⁿ [N]: internal after [`Solid::update_internal_forces`], then whatever is added.
     pub force: Vec<Vec3>,
-    /// Lumped mass [kg]; never changes, also not when elements are removed.
+    /// Lumped mass [kg]; it stays when elements are cut through and goes with a body that is taken out.
     pub mass: Vec<f64>,
     pub(crate) inverse_mass: Vec<f64>,
     pub(crate) bodies: Vec<BodyModel>,

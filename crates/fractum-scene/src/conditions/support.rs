@@ -125,6 +125,17 @@ impl Supports {
         driven.flat_map(|set| set.points.iter().copied())
     }
 
+    /// Holds points that have left on all axes, of so many in all.
+    pub(crate) fn hold(&mut self, points: &[u32], count: usize) {
+        if points.is_empty() {
+            return;
+        }
+        let mut held = self.held.to_vec();
+        held.resize(count, 0);
+        points.iter().for_each(|&point| held[point as usize] = 0b111);
+        self.held = held.into();
+    }
+
     pub(crate) fn shared_held(&self) -> Arc<[u8]> {
         self.held.clone()
     }

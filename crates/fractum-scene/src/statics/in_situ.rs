@@ -5,7 +5,9 @@ use fractum_math::Vec3;
 use super::linear_system::LinearSystem;
 use super::settings::LinearSolver;
 use super::support_check::pins;
+use crate::balance::IN_SITU_ROUND_OFF;
 use crate::error::SceneError;
+use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
 /// Relative residual of linear solutions, and unbalanced force over all forces at which the state is at rest.
@@ -36,6 +38,7 @@ impl Scene {
             if missing <= TOLERANCES[1] * scale {
                 check_pins(self, &held, scale)?;
                 self.solid.initial_displacement = self.solid.displacement.clone();
+                book_in_situ(self);
                 return Ok(());
             }
             system.solve(&self.solid.force, &mut change).map_err(|error| unsolved(error.to_string()))?;
@@ -44,6 +47,15 @@ impl Scene {
         }
         Err(unsolved(format!("forces did not balance after {MOST_SOLUTIONS} solutions")))
     }
+}
+
+/// Enters the energy that the stress has stored, from which a run at rest begins; one in motion finds it in its first step.
+fn book_in_situ(scene: &mut Scene) {
+    let Scene { solid, ledger, .. } = scene;
+    solid.update_internal_forces(0.0, true);
+    let stored = solid.elastic_energy();
+    ledger[EnergyKind::Elastic] = stored;
+    (ledger.initial, ledger.in_situ, ledger.scale) = (stored, stored, IN_SITU_ROUND_OFF * stored);
 }
 
 /// Leaves all forces of t = 0 in `solid.force`; those that are missing on free unknowns, and all that act [N].

@@ -39,7 +39,7 @@ pub(crate) fn possible_columns(case: &Case) -> Vec<Column> {
     let is_particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
     let columns = HistoryColumns {
         particles: case.bodies.iter().any(is_particles),
-        domain: stages.clone().any(|stage| stage.solver.domain.is_some()),
+        domain: may_lose(case),
         heat: case.flows.heat.is_some(),
         turns_back: stages.any(|stage| matches!(stage.solver.kind, SolverKind::Static | SolverKind::Auto)),
         in_motion: both_rests_and_moves(case),
@@ -65,11 +65,17 @@ fn with_probes(case: &Case, no_probes: HistoryColumns) -> Vec<Column> {
 pub(crate) fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryColumns {
     HistoryColumns {
         particles: !scene.bonded.is_empty(),
-        domain: scene.domain().is_some(),
+        domain: may_lose(case),
         heat: scene.heat().is_some(),
         turns_back: course.turns_back,
         in_motion: both_rests_and_moves(case),
     }
+}
+
+/// Whether pieces may leave a domain, or bodies by a stage.
+fn may_lose(case: &Case) -> bool {
+    let mut stages = case.later.iter().chain([case]);
+    case.excavates() || stages.any(|stage| stage.solver.domain.is_some())
 }
 
 /// Whether a run may be at rest and in motion.

@@ -149,7 +149,7 @@ impl Simulation {
             && let Some((next, built)) = later.pop_front()
         {
             solver = Solver::new(&built.scene, &built, &mut phases)?;
-            scene.begin_stage(built.scene);
+            scene.begin_stage(built.scene, false);
             (stage, probes) = (Arc::new(next), built.probes);
         }
         // Rigid bodies are drawn from where they lie at the start.

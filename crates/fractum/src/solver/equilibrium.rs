@@ -52,7 +52,9 @@ impl EquilibriumRun {
         let solver = StaticSolver::new(scene, settings)
             .map_err(|error| Failure::input(format!("{error}; choose solver.linear_solver = \"iterative\"")))?;
         let solver = solver.with_stop(is_interrupted);
-        Ok(EquilibriumRun { solver, phase: Phase::AtRest, rested_at: f64::NEG_INFINITY, periods: 1.0 })
+        // Loads and supports act from the start where in-situ stress is in balance with them.
+        let phase = if scene.solid.initial_displacement.is_empty() { Phase::AtRest } else { Phase::Rested };
+        Ok(EquilibriumRun { solver, phase, rested_at: f64::NEG_INFINITY, periods: 1.0 })
     }
 
     pub(super) fn restore(&mut self, scene: &mut Scene, state: EquilibriumState) {

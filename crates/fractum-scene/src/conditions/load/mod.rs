@@ -4,6 +4,7 @@ mod body_force;
 mod crack_pressure;
 mod nodal;
 mod pressure;
+mod release;
 
 use fractum_fem::{CrackNetwork, CrackNetworkState, Solid};
 use fractum_math::{CHUNK, Vec3};
@@ -13,6 +14,7 @@ pub use body_force::Gravity;
 pub use crack_pressure::CrackPressure;
 pub use nodal::NodalForce;
 pub use pressure::Pressure;
+pub(crate) use release::Release;
 
 use super::{DrivenPoints, Points};
 use crate::gas::{Gas, GasState};
@@ -88,6 +90,8 @@ pub struct Loads {
     cracks: Option<CrackNetwork>,
     /// Gas in holes of the solids and in their cracks.
     gas: Option<Box<Gas>>,
+    /// Forces of bodies that have left, which fade.
+    released: Vec<Release>,
 }
 
 /// What the loads have come to, for a checkpoint.
@@ -95,6 +99,7 @@ pub struct Loads {
 pub(crate) struct LoadsState {
     cracks: Option<CrackNetworkState>,
     gas: Option<GasState>,
+    released: Vec<Release>,
 }
 
 impl Loads {
@@ -109,6 +114,7 @@ impl Loads {
             given: Vec::new(),
             cracks: None,
             gas: None,
+            released: Vec::new(),
         }
     }
 
@@ -150,6 +156,40 @@ impl Loads {
         self.open_cracks(solid);
         self.given = before.given;
         self.gas = before.gas.or(self.gas.take());
+        self.released = before.released;
+        self.make_room();
+    }
+
+    /// Has what is left of the forces of bodies that have left fade in this time, but for nodes that are gone.
+    pub(crate) fn go_on_releasing(&mut self, time: [f64; 2], is_smooth: bool, is_gone: impl Fn(&u32) -> bool) {
+        for release in &mut self.released {
+            release.go_on(time, is_smooth);
+            release.forces.retain(|(node, _)| !is_gone(node));
+        }
+        self.released.retain(|release| release.part[0] > 0.0);
+    }
+
+    /// Adds the forces of a body that has left.
+    pub(crate) fn release(&mut self, release: Release) {
+        self.released.push(release);
+        self.make_room();
+    }
+
+    /// Forces of bodies that have left as they act at a time [N].
+    pub(crate) fn released_forces(&self, time: f64) -> impl Iterator<Item = (u32, Vec3)> {
+        let of = move |release: &Release| {
+            let part = release.part_at(time);
+            release.forces.iter().map(move |&(node, force)| (node, force * part)).collect::<Vec<_>>()
+        };
+        self.released.iter().flat_map(of)
+    }
+
+    /// A step allocates nothing.
+    fn make_room(&mut self) {
+        let count = self.loads.iter().map(Load::count).sum::<usize>();
+        let released = self.released.iter().map(|release| release.forces.len()).sum::<usize>();
+        self.applied.forces.clear();
+        self.applied.forces.reserve(count + released);
     }
 
     /// Lets pressure and gas enter what the removal of elements has opened.
@@ -181,6 +221,7 @@ impl Loads {
         LoadsState {
             cracks: self.cracks.as_ref().map(CrackNetwork::state),
             gas: self.gas.as_ref().map(|gas| gas.state()),
+            released: self.released.clone(),
         }
     }
 
@@ -192,6 +233,8 @@ impl Loads {
         if let (Some(gas), Some(state)) = (&mut self.gas, state.gas) {
             gas.restore(solid, state);
         }
+        self.released = state.released;
+        self.make_room();
     }
 
     /// Whether points have weight.
@@ -203,7 +246,8 @@ impl Loads {
     pub(crate) fn points(&self) -> Vec<u32> {
         let given = self.given.iter().map(|&(point, _)| point);
         let of_gas = self.gas.iter().flat_map(|gas| gas.hole_nodes());
-        given.chain(self.loads.iter().flat_map(Load::points)).chain(of_gas).collect()
+        let released = self.released.iter().flat_map(|release| release.forces.iter().map(|&(node, _)| node));
+        given.chain(self.loads.iter().flat_map(Load::points)).chain(of_gas).chain(released).collect()
     }
 
     /// Whether nothing pushes.
@@ -214,11 +258,12 @@ impl Loads {
     /// Adds the forces of `time` to the points; returns their work in the half step before [J].
     pub(crate) fn add_forces(&mut self, points: &mut impl DrivenPoints, time: f64, dt_before: f64) -> f64 {
         self.applied.forces.clear();
-        if self.loads.is_empty() && self.given.is_empty() {
+        if self.loads.is_empty() && self.given.is_empty() && self.released.is_empty() {
             return 0.0;
         }
         self.applied.gravity = Vec3::zeros();
         self.loads.iter().for_each(|load| load.apply(points, self.cracks.as_ref(), time, &mut self.applied));
+        self.released.iter().for_each(|release| release.apply(time, &mut self.applied.forces));
         let forces = points.forces();
         self.point_forces().for_each(|&(point, force)| forces[point as usize] += force);
         if self.applied.gravity != Vec3::zeros() {
