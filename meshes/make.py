@@ -52,6 +52,7 @@ UNSTRUCTURED = {
     "double-notched-plane/coarse": ("double-notched-plane/beam.geo", {"h": 0.0097}, False),
     "double-notched-plane/medium": ("double-notched-plane/beam.geo", {"h": 0.0074}, False),
     "double-notched-plane/fine": ("double-notched-plane/beam.geo", {"h": 0.0039}, False),
+    "excavation/cavity": ("excavation/cavity.geo", {}, True),
     "excavation-plane/hole": ("excavation-plane/hole.geo", {}, False),
     "excavation-plane/hole-delaunay": ("excavation-plane/hole.geo", {"algorithm": 5}, False),
     "excavation-plane/tunnel": ("excavation-plane/tunnel.geo", {}, False),

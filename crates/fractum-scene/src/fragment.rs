@@ -164,8 +164,8 @@ fn nodal_volumes(solid: &Solid, body: usize) -> Vec<f64> {
     of_nodes
 }
 
-/// Share of the mass of every solid body that is in single nodes.
-pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
+/// Share of the mass of every solid body that is in single nodes, of what has not left.
+pub(crate) fn single_share(solid: &Solid, joined_below: f64, has_left: impl Fn(u32) -> bool) -> Vec<f64> {
     let part = joined_nodes(solid, joined_below);
     let mut members = vec![0u32; part.len()];
     part.iter().for_each(|&place| members[place as usize] += 1);
@@ -178,11 +178,11 @@ pub(crate) fn single_share(solid: &Solid, joined_below: f64) -> Vec<f64> {
         nodes.sort_unstable();
         nodes.dedup();
         let (mut single, mut whole) = (0.0, 0.0);
-        for node in nodes.into_iter().map(|node| node as usize) {
+        for node in nodes.into_iter().filter(|&node| !has_left(node)).map(|node| node as usize) {
             whole += solid.mass[node];
             single += if members[part[node] as usize] == 1 { solid.mass[node] } else { 0.0 };
         }
-        single / whole
+        if whole > 0.0 { single / whole } else { 0.0 }
     };
     (0..solid.body_count()).map(of_body).collect()
 }
@@ -266,7 +266,7 @@ mod tests {
         let (mass, volume) = halves.iter().fold((0.0, 0.0), |(m, v), p| (m + p.mass, v + p.volume));
         assert!((mass / (2400.0 * 3e-6) - 1.0).abs() < 1e-12 && (volume / 3e-6 - 1.0).abs() < 1e-12);
         assert_eq!(halves.iter().map(|p| p.elements).sum::<usize>(), solid.body(0).elements.len() * 2 / 3);
-        assert_eq!(single_share(&solid, 0.5), [0.0]);
-        assert_eq!(single_share(&solid, 0.0), [1.0]);
+        assert_eq!(single_share(&solid, 0.5, |_| false), [0.0]);
+        assert_eq!(single_share(&solid, 0.0, |_| false), [1.0]);
     }
 }

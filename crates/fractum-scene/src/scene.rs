@@ -188,6 +188,8 @@ impl Scene {
 
     /// Share of the mass of every solid body that has come apart into single nodes.
     pub fn single_share(&self) -> Vec<f64> {
-        single_share(&self.solid, self.settings.joined_below)
+        let mut left: Vec<u32> = self.removals.left.nodes(self.solid.reference.len()).collect();
+        left.sort_unstable();
+        single_share(&self.solid, self.settings.joined_below, |node| left.binary_search(&node).is_ok())
     }
 }

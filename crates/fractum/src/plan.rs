@@ -257,7 +257,8 @@ impl Plan {
             let corner = |p: Vec3| format!("({}, {}, {})", quantity(p.x, "m"), quantity(p.y, "m"), quantity(p.z, "m"));
             self.add("domain", format!("free pieces outside {} to {} leave the run", corner(min), corner(max)));
         }
-        if case.in_situ.is_some() {
+        let is_first = case.excavation.is_none() || !case.later.is_empty();
+        if case.in_situ.is_some() && is_first {
             self.add("in situ", "at rest under the stress of the far field at t = 0; displacements count from there");
         }
         if let Some(gas) = scene.gas() {

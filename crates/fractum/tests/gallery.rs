@@ -86,12 +86,14 @@ fn a_case_that_promises_something_says_something_of_each_neighbour() {
 }
 
 /// One case of every kind, small ones.
-const KINDS: [&str; 19] = [
+const KINDS: [&str; 21] = [
     "absorbing/normal",
     "ball-on-edge/ball",
     "bonded-box/tension-vibration",
     "brazilian-static/coarse",
     "cantilever-static/plane-depth-2",
+    "excavation/hole-motion",
+    "excavation/tunnel",
     "falling-block/block",
     "gas-blast/gas",
     "graded-plate/in-parts",

@@ -211,8 +211,8 @@ fn wrong_excavation_is_explained() {
     let excavate = "excavate = [\"core\"]";
     let before = "name = \"before\"\n";
     let third = "[[stages]]\nname = \"late\"\nexcavate = [\"core\"]\nsolver = { kind = \"explicit\", end = \"1 ms\" }\n\n[output]";
-    let held = "[[supports]]\nname = \"in the core\"\nwhere = \"hypot(x, y) < 5 mm\"\nfix = \"xy\"\n[in_situ]";
-    let pushed = "[[loads]]\nname = \"inside\"\nwhere = \"hypot(x, y) < 5 mm\"\nforce = { x = \"1 N\" }\n[in_situ]";
+    let held = "[[supports]]\nname = \"in the core\"\nwhere = \"hypot(x, y) < 5 mm\"\nfix = \"xy\"\nstages = [\"hole\"]\n[in_situ]";
+    let pushed = "[[loads]]\nname = \"inside\"\nwhere = \"hypot(x, y) < 5 mm\"\nforce = { x = \"1 N\" }\nstages = [\"hole\"]\n[in_situ]";
     for (from, to, words) in [
         (excavate, "excavate = [\"cor\"]", "did you mean \"core\"?"),
         (excavate, "excavate = \"core\"", "expected a list of names of solid bodies"),
