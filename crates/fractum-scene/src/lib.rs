@@ -78,6 +78,7 @@ pub use modes::{Mode, Modes};
 pub use ranks::Watched;
 pub use saved::SceneState;
 pub use scene::{Scene, SceneSettings};
+pub use stage::{released_forces, with_excavation};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::StepReport;
 pub use subcycling::SubcyclingState;

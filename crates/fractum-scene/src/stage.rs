@@ -29,21 +29,21 @@ impl Scene {
             self.books.left += stored - self.optional.surface_supports.stored();
         }
     }
+}
 
-    /// The same scene, of a later stage that begins without some bodies, see [`Scene::begin_stage`].
-    ///
-    /// - `gone`: all that have left by then
-    pub fn with_excavation(mut self, excavation: Excavation, gone: &[usize]) -> Self {
-        gone.iter().for_each(|&body| _ = removal::take_out_body(&mut self.solid, 0.0, body));
-        self.supports.hold(&orphans(&self.solid, gone), self.solid.reference.len());
-        self.optional.excavation = Some(Box::new(excavation));
-        self
-    }
+/// The scene of a later stage, which begins without some bodies, see [`Scene::begin_stage`].
+///
+/// - `gone`: all that have left by then
+pub fn with_excavation(mut scene: Scene, excavation: Excavation, gone: &[usize]) -> Scene {
+    gone.iter().for_each(|&body| _ = removal::take_out_body(&mut scene.solid, 0.0, body));
+    scene.supports.hold(&orphans(&scene.solid, gone), scene.solid.reference.len());
+    scene.optional.excavation = Some(Box::new(excavation));
+    scene
+}
 
-    /// What the loads still bear of bodies that have left: nodes, and the force on each [N], see [`Excavation`].
-    pub fn released_forces(&self) -> impl Iterator<Item = (u32, Vec3)> {
-        self.loads.released_forces(self.clock.time)
-    }
+/// What the loads of a scene still bear of bodies that have left: nodes, and the force on each [N], see [`Excavation`].
+pub fn released_forces(scene: &Scene) -> impl Iterator<Item = (u32, Vec3)> {
+    scene.loads.released_forces(scene.clock.time)
 }
 
 /// Takes bodies out and lets what they bore fade.

@@ -48,7 +48,7 @@ pub(super) fn with_excavation(case: &Case, scene: Scene, parts: &[Part]) -> Scen
         share: excavation.share,
         is_smooth: case.solver.kind == SolverKind::Explicit,
     };
-    scene.with_excavation(leaving, &gone(case, parts))
+    fractum_scene::with_excavation(scene, leaving, &gone(case, parts))
 }
 
 /// Warns of what measures places that leave.

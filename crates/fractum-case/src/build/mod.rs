@@ -409,8 +409,8 @@ impl<'a> Context<'a> {
             let whole = self.selected_nodes(on, &numbering.whole());
             let left: Vec<u32> = whole.iter().copied().filter(|&node| !numbering.has_left(node)).collect();
             if let (true, true, Some(place)) = (left.is_empty(), !whole.is_empty(), on.place()) {
-                let found =
-                    format!("= \"{}\": all its nodes have left in stage \"{}\"", on.label(), self.case.source.stage);
+                let meant = on.group.as_ref().map_or_else(String::new, |group| format!("= \"{}\"", group.value));
+                let found = format!("{meant}: all its nodes have left in stage \"{}\"", self.case.source.stage);
                 self.error(place, found, "stages = [...] with those before alone");
             }
             return left;

@@ -21,7 +21,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("stages[].name", K::Text, "required", "Name, unique among stages"),
     key("stages[].excavate", K::Names, "none", "Solid bodies that leave as the stage begins, not in the first one. The forces that they bore stay on the nodes of the others and fade"),
     key("stages[].release", K::Quantity(D::TIME), "to the end of the stage", "Time over which the forces of excavated bodies fade, ≥ 0; at rest in proportion to time, in motion as a smooth step"),
-    key("stages[].release_share", K::Quantity(D::NONE), "1", "Part of the forces of the bodies excavated in this stage that fades in it, above 0 and at most 1; the rest fades in the next stage"),
+    key("stages[].release_share", K::Quantity(D::NONE), "all of it", "Part of the forces of the bodies excavated in this stage that fades in it, above 0 and at most 1; the rest fades in the next stage"),
     key("stages[].solver", K::Table, "required", "As [solver]; end is the time at which the stage ends, on the one clock of the run"),
     key("solver", K::Table, "", "Time and its steps; required where there are no stages"),
     key("solver.kind", K::Choice(names::<SolverKind>), "\"explicit\"", "Kind of solver: motion over time, equilibrium under a load that grows slowly, whichever of both suits the scene and its loads, conduction of heat alone, or natural vibrations of solids"),

@@ -1,5 +1,7 @@
 //! What stages take out: `stages[].excavate` and how its forces fade.
 
+use fractum_output::number::quantity;
+
 use super::names;
 use crate::model::{Body, BodyKind, Case, Excavation, LoadKind};
 use crate::reader::{Reader, Table};
@@ -52,7 +54,8 @@ pub(super) fn join(reader: &Reader, cases: &mut [Case]) {
                 let note = Diagnostic::error(&release.place, "has no effect in a stage in which nothing is released");
                 reader.note(note.remedy("name bodies in excavate, or remove the key"));
             } else if release.value > lasts * (1.0 + 1e-9) {
-                let found = format!("= {} s in a stage that lasts {lasts} s", release.value);
+                let [over, lasts] = [release.value, lasts].map(|time| quantity(time, "s"));
+                let found = format!("= {over} in a stage that lasts {lasts}");
                 reader.note(Diagnostic::error(&release.place, found).expected("no more than the stage lasts"));
             }
         }

@@ -28,6 +28,7 @@ fn the_sample_holds_every_key_of_the_list() {
     good(&SMALL.replace("end = 1e-3", "kind = \"modes\"\ncount = 3\nlinear_solver = \"faer\""), &[]);
     good(&[SMALL, PRODUCTS].concat(), &[]);
     good(&SMALL.replace("[solver]\nend = 1e-3", STAGES), &[]);
+    good(&SMALL.replace("[solver]\nend = 1e-3", EXCAVATION), &[]);
 }
 
 /// A static solver with all of its keys, in place of the end of a run.
@@ -39,6 +40,12 @@ const STATIC: &str = "end = 1e-3\nkind = \"static\"\ncontrol = \"opening\"\n\
 const STAGES: &str = "[[supports]]\ngroup = \"bar\"\nfix = \"x\"\nstages = [\"all\"]\n\
                       [[loads]]\ngravity = { x = 1 }\nstages = [\"all\"]\n\
                       [[stages]]\nname = \"all\"\nsolver = { end = 1e-3 }";
+
+/// Stages of which one takes a body out, in place of the solver.
+const EXCAVATION: &str = "[[bodies]]\nname = \"core\"\nkind = \"solid\"\ngroup = \"core\"\nmaterial = \"steel\"\n\
+                          [[stages]]\nname = \"before\"\nsolver = { kind = \"static\", end = 1e-3 }\n\
+                          [[stages]]\nname = \"after\"\nexcavate = [\"core\"]\nrelease = 1e-4\nrelease_share = 0.5\n\
+                          solver = { end = 2e-3 }";
 
 /// A gas after another law, with all of its keys.
 const PRODUCTS: &str = r#"[gas]
