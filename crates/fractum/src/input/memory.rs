@@ -50,7 +50,8 @@ pub(crate) fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Re
             BodyKind::Solid(own) => {
                 let (count, of, each) = solid(own, mesh);
                 // In-situ stress is found by every process.
-                let shared = if own.needs_all_cells() || case.in_situ.is_some() { 0.0 } else { SHARED };
+                let shared =
+                    if own.needs_all_cells() || case.in_situ.is_some() || case.excavates() { 0.0 } else { SHARED };
                 (count, of, each * (1.0 - shared + shared / processes.all as f64))
             }
             BodyKind::Bonded(own) => (bonded(own), "particles", BONDED_PARTICLE),

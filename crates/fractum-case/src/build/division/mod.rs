@@ -47,6 +47,7 @@ pub fn cannot_divide(case: &Case) -> Option<String> {
         .or(no_solid)
         .or_else(|| stages().find_map(of_stage).map(str::to_owned))
         .or_else(|| case.in_situ.as_ref().map(|_| "stress in situ".to_owned()))
+        .or_else(|| case.excavates().then(|| "bodies that leave in a stage".to_owned()))
         .or_else(all_whole)
 }
 
