@@ -95,6 +95,7 @@ fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
         strength_by_chance: Vec::new(),
         reduce_strength_to_fit: bar.reduce_strength_to_fit,
         regularisation: bar.is_regularised.then_some(Regularisation { length: None }),
+        rate: None,
     };
     (nodes, Body { damage: Some(zone), ..body })
 }

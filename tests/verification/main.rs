@@ -17,6 +17,7 @@ mod plane;
 mod ranks;
 mod ranks_divided;
 mod ranks_particles;
+mod rate;
 mod rigid_contact;
 mod scene;
 mod statics;

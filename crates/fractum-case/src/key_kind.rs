@@ -72,6 +72,8 @@ pub enum KeyKind {
     Names,
     /// All of something, or the names of some.
     AllOrNames,
+    /// A factor as a function of the rate of strain.
+    RateCurve,
     /// Rows of group, delay and pulse, or a file of them.
     Firing,
 }
@@ -104,6 +106,10 @@ impl KeyKind {
             Self::ProbeExpression => "an expression of probes such as \"2*max(load)\"".to_string(),
             Self::Names => "a list of names such as [\"rest\", \"release\"]".to_string(),
             Self::AllOrNames => "true for all, or a list of names such as [\"left\", \"right\"]".to_string(),
+            Self::RateCurve => {
+                "an expression of rate, pairs such as [[\"1e-6 1/s\", 1], [\"10 1/s\", 1.4]], or the name of a standard"
+                    .to_string()
+            }
             Self::Firing => {
                 "rows such as [[\"hole-1\", \"25 ms\", \"contour\"]], or a CSV file of such rows".to_string()
             }
@@ -135,6 +141,7 @@ impl KeyKind {
             Self::Points => "list of pairs".to_string(),
             Self::Names => "list of names".to_string(),
             Self::AllOrNames => "true, list of names".to_string(),
+            Self::RateCurve => "function of rate".to_string(),
             Self::Firing => "list of rows, text".to_string(),
         }
     }

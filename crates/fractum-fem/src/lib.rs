@@ -40,12 +40,14 @@ mod solid;
 mod state;
 
 pub use body::edges::BodyEdges;
+pub use body::rate::RateCurves;
 pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Region, Regularisation};
 pub use cells::viscosity::Viscosity;
 pub use cracks::{
     CrackCell, CrackEdge, CrackFacet, CrackMouth, CrackNetwork, CrackNetworkState, CrackPlane, CrackSide, CrackSurface,
     Fracture, SeparatedElement, SeparatedFacet, Separation,
 };
+pub use damage::rate::RateReport;
 pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
@@ -53,7 +55,7 @@ pub use divided::{
 pub use element::{CUT_MODES, InvertedElement, facet_area};
 pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
-pub use fractum_kernels::damage::{EdgeDamage, Seen};
+pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
 pub use fractum_kernels::material::{
     Bedding, Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Plane, Softening, Stiffness, Wave,
 };

@@ -106,14 +106,17 @@ pub enum NotSecant {
     Unilateral,
     /// Damage takes time.
     Rate,
+    /// Strength grows with the rate of strain.
+    StrainRate,
 }
 
 impl Solid {
     /// What of a body keeps it from being treated by secant stiffness, with the index of the body.
     pub fn not_secant(&self) -> Option<(usize, NotSecant)> {
         let of = |model: &BodyModel| {
-            let law = model.body.damage.as_ref().map(|zone| &zone.law);
-            match law {
+            let zone = model.body.damage.as_ref();
+            match zone.map(|zone| &zone.law) {
+                _ if zone.is_some_and(|zone| zone.rate.is_some()) => Some(NotSecant::StrainRate),
                 _ if model.body.kinematics == Kinematics::Corotational => Some(NotSecant::Corotational),
                 Some(law) if law.unilateral => Some(NotSecant::Unilateral),
                 Some(law) if law.rate_time > 0.0 => Some(NotSecant::Rate),
@@ -318,14 +321,14 @@ impl Solid {
                     continue;
                 }
                 let ends = cells.elastic_ends(cell, [before, after]);
-                let growth = field.load(cell, seen, 0.0);
+                let growth = field.load_at_rest(cell, seen);
                 let taken = Taken::straight(0.5 * elasticity.stress(ends[1]).dot(ends[0]));
                 *dissipated += taken.by(growth) * cells.volume[cell];
             }
         }
         for standard in bodies.iter_mut().filter_map(|model| model.standard.as_mut()) {
             for edge in 0..standard.field.state.len() {
-                standard.field.load(edge, seen[next], 0.0);
+                standard.field.load_at_rest(edge, seen[next]);
                 next += 1;
             }
         }

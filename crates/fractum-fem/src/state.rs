@@ -1,11 +1,12 @@
 //! What changes in a solid during a run, for checkpoints.
 
-use fractum_kernels::damage::EdgeDamage;
+use fractum_kernels::damage::{EdgeDamage, EdgeRate};
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::Kinematics;
 use crate::damage::edge::EdgeField;
+use crate::damage::rate::{RateField, RateReport};
 use crate::motion::phase_edges::restore_phase;
 use crate::removal::rebuild_cells_around;
 use crate::solid::Solid;
@@ -26,6 +27,8 @@ pub struct BodyState {
     /// Active edges of a phase field, each with d, d of the step before, and whether elements have left it since the last forces; empty
     /// without one.
     pub phase: Vec<(u32, [f64; 2], bool)>,
+    /// Time and history of the rate of strain, by edge; empty where strength does not grow with it.
+    pub rates: Vec<(f64, EdgeRate)>,
 }
 
 /// What changes in a solid during a run.
@@ -56,6 +59,13 @@ impl Solid {
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
         }
+    }
+
+    /// The rates at which the edges of a body began to break; none where they play no part.
+    pub fn rate_report(&self, body: usize) -> Option<RateReport> {
+        let fields = self.edge_fields().filter(|(of, _)| *of == body).map(|(_, field)| field.rate.as_deref());
+        let fields: Option<Vec<&RateField>> = fields.collect();
+        fields.filter(|fields| !fields.is_empty()).map(|fields| RateReport::of(fields.iter().flat_map(|f| &f.edges)))
     }
 
     /// Edge histories of a body in the order of its edges, those that are known here; empty without damage.
@@ -113,7 +123,7 @@ impl Solid {
             model.body.kinematics = body.kinematics;
             let cells = blocks.iter_mut().filter(|block| block.body == index).filter_map(Block::edge_field_mut);
             let standard = model.standard.as_mut().map(|standard| &mut standard.field);
-            cells.chain(standard).for_each(|field| field.restore(&body.edges));
+            cells.chain(standard).for_each(|field| field.restore(&body.edges, &body.rates));
             for (&(block, cell), saved) in model.location.all().iter().zip(&body.elements) {
                 if let BlockLaw::Standard(law) = &mut blocks[block as usize].law {
                     (law.damage[cell as usize], law.stress[cell as usize]) = *saved;
@@ -141,6 +151,19 @@ fn kept_damage(solid: &Solid, body: usize) -> Vec<EdgeDamage> {
     if solid.bodies[body].location.keeps_all() { solid.edge_damage(body) } else { Vec::new() }
 }
 
+/// What is saved of the rates of the edges of a body, in their order; nothing where they play no part.
+fn saved_rates(solid: &Solid, body: usize) -> Vec<(f64, EdgeRate)> {
+    let model = &solid.bodies[body];
+    let has_rates = model.body.damage.as_ref().is_some_and(|zone| zone.rate.is_some());
+    let Some(edges) = model.edges.as_ref().filter(|_| has_rates) else { return Vec::new() };
+    let mut all = vec![(0.0, EdgeRate::intact(f64::INFINITY)); edges.len()];
+    for (_, field) in solid.edge_fields().filter(|(of, _)| *of == body) {
+        let Some(rate) = &field.rate else { continue };
+        (0..).zip(&field.edges).for_each(|(at, &edge)| all[edge as usize] = rate.saved(at));
+    }
+    all
+}
+
 pub(crate) fn body_state(solid: &Solid, body: usize, edges: Vec<EdgeDamage>) -> BodyState {
     let model = &solid.bodies[body];
     let of = |&(block, cell): &(u32, u32)| match &solid.blocks[block as usize].law {
@@ -153,5 +176,5 @@ pub(crate) fn body_state(solid: &Solid, body: usize, edges: Vec<EdgeDamage>) -> 
     let mut alive = vec![true; solid.neighbours.element_count(body, model.alive.len())];
     let numbers = (0..).map(|element| solid.neighbours.number(body, element) as usize);
     numbers.zip(&model.alive).for_each(|(number, &is_alive)| alive[number] = is_alive);
-    BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase }
+    BodyState { kinematics: model.body.kinematics, alive, edges, elements, phase, rates: saved_rates(solid, body) }
 }

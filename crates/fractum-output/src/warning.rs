@@ -149,6 +149,8 @@ codes! {
     Unsettled = "unsettled",
     /// Bands of a phase field that have become one.
     MergedBands = "merged-bands",
+    /// Elements too large for the strength at their rate of strain.
+    RateLimited = "rate-limited",
 }
 
 impl fmt::Display for Code {

@@ -99,6 +99,7 @@ impl Plan {
         }
         plan.describe_bodies(case, scene, bonded);
         plan.describe_scatter(case, &built.weibull);
+        plan.describe_rates(case, scene);
         plan.describe_ties(&built.ties);
         plan.describe_inner_faces(scene);
         if !case.source.stage.is_empty() {

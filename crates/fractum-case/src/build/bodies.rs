@@ -1,5 +1,7 @@
 //! Solid bodies: elements, nodes, materials, strength.
 
+use std::sync::Arc;
+
 use fractum_fem as fem;
 use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid, motion};
 use fractum_math::Vec3;
@@ -249,6 +251,7 @@ fn damage_zone(
         strength_by_chance,
         reduce_strength_to_fit: damage.reduce_strength_to_fit,
         regularisation: damage.regularisation,
+        rate: damage.rate.as_ref().map(|rate| Arc::new(rate.value.clone())),
     }
 }
 

@@ -20,6 +20,7 @@ mod model_doubts;
 mod ppv;
 mod precheck;
 mod probes;
+mod rate;
 mod statics;
 mod strength;
 mod subcycling;

@@ -7,7 +7,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Domain, Scene};
 
-use super::{Context, interfaces};
+use super::{Context, interfaces, rate};
 use crate::measure::ContactForce;
 use crate::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
@@ -26,6 +26,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_heat_probes(context);
     context.check_subcycling();
     interfaces::check(context);
+    rate::check(context);
 }
 
 /// Probes of heat need heat.

@@ -30,6 +30,7 @@ pub(super) fn statics(context: &mut Context<'_>, solid: &Solid, numbering: &Numb
             NotSecant::Corotational => "kinematics = \"corotational\"",
             NotSecant::Unilateral => "damage.unilateral = true",
             NotSecant::Rate => "damage.rate_time",
+            NotSecant::StrainRate => "damage.rate",
         };
         let found = format!("= \"static\" with {found} in body \"{}\"", solid.body(body).name);
         context.error(&place, found, "small strains, open cracks and damage without delay; or kind = \"explicit\"");

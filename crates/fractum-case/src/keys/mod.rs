@@ -22,6 +22,9 @@ use super::reader::Unknown;
 use super::tree::{Node, Value, join};
 use super::{Diagnostic, nearest};
 
+/// Names of the curves of strength by rate that a standard gives.
+pub(super) const RATE_PRESETS: [&str; 2] = ["fib-2010", "fib-2010-first-branch"];
+
 /// Pattern of the table form of a time function, which may stand at many keys.
 pub(super) const TIME_FUNCTION: &str = "TIME_FUNCTION";
 

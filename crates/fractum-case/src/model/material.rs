@@ -1,6 +1,6 @@
 //! Materials: elasticity, damage, contact.
 
-use fractum_fem::{Bedding, CriterionKind, DamageLaw, Regularisation};
+use fractum_fem::{Bedding, CriterionKind, DamageLaw, RateCurves, Regularisation};
 use fractum_scene::ContactParameters;
 
 use super::{BondFailure, Bonds, Interfaces, Scatter, Thermal};
@@ -60,6 +60,8 @@ pub struct Damage {
     pub reduce_strength_to_fit: bool,
     /// Damage as a phase field.
     pub regularisation: Option<Regularisation>,
+    /// Strength and fracture energy by the rate of strain.
+    pub rate: Option<Spanned<RateCurves>>,
 }
 
 choice!(CriterionKind {

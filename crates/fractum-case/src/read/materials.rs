@@ -112,6 +112,8 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let regularisation = regularisation(&table);
     let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
+    let strength_ratio = compressive_strength.zip(tensile_strength).map(|(compressive, tensile)| compressive / tensile);
+    let rate = table.table("rate").map(|rate| super::rate::read(rate, criterion, strength_ratio));
     table.finish("here");
     let tensile_strength = tensile_strength?;
     let strength_ratio = compressive_strength? / tensile_strength;
@@ -129,6 +131,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
         reduce_strength_to_fit,
         regularisation: regularisation?,
+        rate: rate.map_or(Some(None), |rate| rate.map(Some))?,
     })
 }
 
@@ -181,6 +184,7 @@ fn regularisation(damage: &Table<'_>) -> Option<Option<Regularisation>> {
         return Some(None);
     }
     damage.refuse("rate_time", "with a phase field, whose energy it would raise");
+    damage.refuse("rate", "with a phase field, whose edges have no strength of their own");
     let length = damage.quantity("length").positive().map(Some).or_if_absent(None)?;
     Some(Some(Regularisation { length }))
 }

@@ -22,6 +22,7 @@ mod parameters;
 mod plots;
 mod ppv;
 mod probes;
+mod rate;
 mod ratios;
 mod rigid;
 mod scatter;

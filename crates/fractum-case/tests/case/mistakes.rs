@@ -331,6 +331,37 @@ fn each_mistake_has_one_clear_message() {
         ),
         (
             "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate = { strength = 2 }, \
+             regularisation = \"phase-field\" }",
+            "8:55: materials.steel.damage.rate has no effect with a phase field, whose edges have no strength of their own; remove it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate = { strength = [[1, 1], [1, 2]] } }",
+            "8:83: materials.steel.damage.rate.strength[1] is a list; expected a rate above that of the pair before it",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate = { strength = \"rate/1 1/s\" } }",
+            "8:74: materials.steel.damage.rate.strength",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate = { strength = \"fib-2010\", fracture_energy = \"fib-2010\" } }",
+            "8:97: materials.steel.damage.rate.fracture_energy",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, rate = { strength = 2, compressive_strength = 2 } }",
+            "8:94: materials.steel.damage.rate.compressive_strength",
+        ),
+        (
+            "poisson_ratio = 0.3",
+            "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, criterion = \"drucker-prager\", rate = { strength = 2 } }",
+            "8:55: materials.steel.damage.rate",
+        ),
+        (
+            "poisson_ratio = 0.3",
             "poisson_ratio = 0.3\ndamage = { tensile_strength = 1, fracture_energy = 1, crack_plane_gate = true }",
             "8:55: materials.steel.damage.crack_plane_gate is not a key; the crack-plane gate is gone; remove the key, and where \
              cracks follow rows of the mesh take another one or set regularisation = \"phase-field\"",

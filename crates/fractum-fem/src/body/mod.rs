@@ -1,11 +1,14 @@
 pub(crate) mod edges;
 pub(crate) mod elasticity;
+pub(crate) mod rate;
 
 use std::sync::Arc;
 
 use fractum_kernels::damage::{Restraint, Softens};
 use fractum_kernels::material::{Bedding, DamageLaw, Elastic, Hooke, Plane};
 use serde::{Deserialize, Serialize};
+
+use self::rate::RateCurves;
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,6 +88,8 @@ pub struct DamageZone {
     pub reduce_strength_to_fit: bool,
     /// Damage as a phase field instead of edge by edge.
     pub regularisation: Option<Regularisation>,
+    /// How strength and fracture energy grow with the rate of strain.
+    pub rate: Option<Arc<RateCurves>>,
 }
 
 /// A group of elements with one material and one formulation; the input of [`crate::Solid::new`].
@@ -143,6 +148,7 @@ impl Body {
             strength_by_chance: Vec::new(),
             reduce_strength_to_fit: false,
             regularisation: None,
+            rate: None,
         };
         Body { damage: Some(zone), ..self }
     }

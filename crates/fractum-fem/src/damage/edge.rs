@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
-use fractum_kernels::damage::{EdgeDamage, Seen, Softens};
+use fractum_kernels::Sym3;
+use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, Softens};
 
+use crate::damage::rate::RateField;
 use crate::damage::threshold::Threshold;
 
 /// Damage of a set of edges: those of a block of smoothed cells, or all of a standard body.
@@ -26,6 +28,8 @@ pub(crate) struct EdgeField {
     pub(crate) fresh: Vec<u32>,
     /// An edge has passed its strength and has no damage yet, which the phase field must give it.
     pub(crate) woken: bool,
+    /// Rates of strain, where strength grows with them.
+    pub(crate) rate: Option<Box<RateField>>,
 }
 
 impl EdgeField {
@@ -33,7 +37,9 @@ impl EdgeField {
     pub(crate) fn new(softens: Arc<Softens>, edges: Vec<u32>, threshold: &Threshold) -> Self {
         let strength = edges.iter().map(|&edge| threshold.strength(edge)).collect();
         let length = edges.iter().map(|&edge| threshold.length(edge)).collect();
-        EdgeField::of_edges(softens, edges, strength, length)
+        let mut field = EdgeField::of_edges(softens, edges, strength, length);
+        field.rate = threshold.rate.clone().map(|curves| Box::new(RateField::new(curves, &field.strength)));
+        field
     }
 
     /// The same with strength [Pa] and characteristic length [m] of each.
@@ -48,21 +54,22 @@ impl EdgeField {
             damaged: 0,
             fresh: Vec::new(),
             woken: false,
+            rate: None,
         }
     }
 
     /// Keeps the histories of its edges from now on.
     pub(crate) fn keep_histories(&mut self) {
         if self.state.is_empty() {
-            self.state = self.strength.iter().map(|&strength| EdgeDamage::intact(strength)).collect();
-            self.threshold.clone_from(&self.strength);
+            self.state = self.strength.iter().map(|&strength| self.intact(strength)).collect();
+            self.threshold = self.state.iter().map(|edge| edge.kappa).collect();
         }
     }
 
     /// Lets go of the histories of its edges where nothing has happened to any of them.
     pub(crate) fn forget_intact(&mut self) {
         let mut histories = self.state.iter().zip(&self.strength);
-        if histories.all(|(edge, &strength)| *edge == EdgeDamage::intact(strength)) {
+        if histories.all(|(edge, &strength)| *edge == self.intact(strength)) {
             (self.state, self.threshold) = Default::default();
         }
     }
@@ -76,24 +83,42 @@ impl EdgeField {
 
     /// History of an edge.
     pub(crate) fn history(&self, index: usize) -> EdgeDamage {
-        self.state.get(index).copied().unwrap_or_else(|| EdgeDamage::intact(self.strength[index]))
+        self.state.get(index).copied().unwrap_or_else(|| self.intact(self.strength[index]))
     }
 
-    /// Advances the history of an edge to what it sees; returns the growth of damage.
+    /// History of an edge of this strength that nothing has happened to yet.
+    fn intact(&self, strength: f64) -> EdgeDamage {
+        self.rate.as_ref().map_or_else(|| EdgeDamage::intact(strength), |rate| rate.intact(strength))
+    }
+
+    /// Advances the history of an edge to what it sees under its effective stress; returns the growth of damage.
     #[inline(always)]
-    pub(crate) fn load(&mut self, index: usize, seen: Seen, dt: f64) -> f64 {
-        let edge = &mut self.state[index];
+    pub(crate) fn load(&mut self, index: usize, mut seen: Seen, stress: Sym3, dt: f64) -> f64 {
+        let EdgeField { softens, state, strength, length, rate, .. } = self;
+        let (edge, mut length) = (&mut state[index], length[index]);
         if seen.stress <= edge.kappa {
             return 0.0;
         }
+        if let Some(rate) = rate {
+            let (step, rates) = rate.in_step(dt);
+            if !step.lets_grow(softens, &mut rates[index], (edge, &mut seen), (&mut strength[index], length), stress) {
+                return 0.0;
+            }
+            length /= rates[index].energy;
+        }
         let was_broken = edge.broken;
-        let growth = self.softens.load(edge, seen, self.strength[index], self.length[index], dt);
+        let growth = softens.load(edge, seen, strength[index], length, dt);
         self.woken |= edge.damage == 0.0;
         if edge.broken && !was_broken {
             self.fresh.push(index as u32);
         }
         self.note(index);
         growth
+    }
+
+    /// The same at rest, where no body is whose strength grows with the rate of strain.
+    pub(crate) fn load_at_rest(&mut self, index: usize, seen: Seen) -> f64 {
+        self.load(index, seen, Sym3::ZERO, 0.0)
     }
 
     /// Edges of the body that have passed their strength.
@@ -149,7 +174,9 @@ impl EdgeField {
 
     /// Equivalent stress from which on damage grows [Pa].
     pub(crate) fn onset(&self, index: usize) -> f64 {
-        self.state[index].kappa
+        let edge = &self.state[index];
+        // Where the rate counts, an intact edge is looked at before.
+        if edge.damage == 0.0 { edge.kappa.max(self.strength[index]) } else { edge.kappa }
     }
 
     /// Damage that an edge would have after what it sees.
@@ -162,9 +189,13 @@ impl EdgeField {
     }
 
     /// Takes over saved histories, by edge of the body. Removal looks at all of them once more, and finds nothing new.
-    pub(crate) fn restore(&mut self, saved: &[EdgeDamage]) {
+    pub(crate) fn restore(&mut self, saved: &[EdgeDamage], rates: &[(f64, EdgeRate)]) {
         let is_kept = !self.state.is_empty();
         self.keep_histories();
+        if let Some(rate) = &mut self.rate {
+            let own = self.edges.iter().zip(&mut self.strength).enumerate();
+            own.for_each(|(index, (&edge, strength))| *strength = rate.restore(index, rates[edge as usize]));
+        }
         for index in 0..self.edges.len() {
             self.state[index] = saved[self.edges[index] as usize];
             self.threshold[index] = self.state[index].threshold();

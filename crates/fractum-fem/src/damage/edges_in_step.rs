@@ -99,7 +99,7 @@ impl EdgesInStep<'_> {
         let volume = self.cells.volume[cell];
         let EdgeDamage { damage: damage_before, strain: kept, .. } = field.state[cell];
         let seen = field.softens.see(&field.state[cell], field.strength[cell], stress, q);
-        let growth = field.load(cell, seen, self.step.dt);
+        let growth = field.load(cell, seen, stress, self.step.dt);
         if growth > 0.0 {
             // An edge that was intact has kept no strain.
             let before = if damage_before == 0.0 { self.step.strain_before(self.cells, cell) } else { kept };

@@ -3,5 +3,6 @@
 pub(crate) mod edge;
 pub(crate) mod edges_in_step;
 pub(crate) mod phase;
+pub(crate) mod rate;
 pub(crate) mod standard;
 pub(crate) mod threshold;

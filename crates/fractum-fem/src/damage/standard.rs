@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use fractum_kernels::damage::{Softens, Taken};
+use fractum_kernels::damage::{EdgeDamage, EdgeRate, Softens, Taken};
 use fractum_math::{Lane, Ragged, Sym3, widest};
 use rayon::prelude::*;
 
@@ -11,6 +11,7 @@ use crate::body::ElementKind;
 use crate::cells::block::{BLOCK_NODES, Cells, Run};
 use crate::cells::kernel::{CellLaw, add_cell_forces, gradient_columns, small_strain, symmetric_columns};
 use crate::damage::edge::EdgeField;
+use crate::damage::rate::RateInStep;
 use crate::element::cut_modes;
 
 /// Damage state of a standard body.
@@ -176,9 +177,11 @@ impl StandardDamage {
             }
             sum * (1.0 / f64::from(count))
         };
-        let EdgeField { softens, state, strength, length, woken, fresh, .. } = field;
-        let all = state.par_chunks_mut(EDGES).zip(runs.par_iter_mut()).enumerate();
-        all.for_each(|(number, (edges, run))| {
+        let EdgeField { softens, state, strength, length, woken, fresh, rate, .. } = field;
+        let advance = |number: usize,
+                       (edges, run): (&mut [EdgeDamage], &mut RunOfEdges),
+                       strength: &mut [f64],
+                       mut rates: Option<(RateInStep<'_>, &mut [EdgeRate])>| {
             run.clear();
             for (word, group) in edges.chunks_mut(GROUP).enumerate() {
                 let first = number * EDGES + word * GROUP;
@@ -196,20 +199,35 @@ impl StandardDamage {
                     if q == 0.0 {
                         continue;
                     }
-                    let was_broken = edge.broken;
-                    let growth = softens.load(
-                        edge,
-                        softens.see(edge, strength[index], stress, q),
-                        strength[index],
-                        length[index],
-                        dt,
-                    );
+                    let at = index - number * EDGES;
+                    let (was_broken, strength, mut length) = (edge.broken, &mut strength[at], length[index]);
+                    let mut seen = softens.see(edge, *strength, stress, q);
+                    if let Some((step, rates)) = &mut rates {
+                        let rate = &mut rates[at];
+                        if seen.stress <= edge.kappa
+                            || !step.lets_grow(softens, rate, (edge, &mut seen), (strength, length), stress)
+                        {
+                            continue;
+                        }
+                        length /= rate.energy;
+                    }
+                    let growth = softens.load(edge, seen, *strength, length, dt);
                     run.loaded = true;
                     run.grown[word] |= u64::from(growth > 0.0) << place;
                     run.broke.extend((edge.broken && !was_broken).then_some(index as u32));
                 }
             }
-        });
+        };
+        let all = state.par_chunks_mut(EDGES).zip(runs.par_iter_mut()).zip(strength.par_chunks_mut(EDGES)).enumerate();
+        match rate {
+            None => all.for_each(|(number, (edges, strength))| advance(number, edges, strength, None)),
+            Some(rate) => {
+                rate.pass(dt);
+                let (step, rates) = rate.in_step(dt);
+                let all = all.zip(rates.par_chunks_mut(EDGES));
+                all.for_each(|((n, (edges, strength)), rates)| advance(n, edges, strength, Some((step, rates))));
+            }
+        }
         *woken |= runs.iter().any(|run| run.loaded);
         fresh.extend(runs.iter().flat_map(|run| &run.broke));
     }

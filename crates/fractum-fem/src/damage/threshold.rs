@@ -1,9 +1,12 @@
+use std::sync::Arc;
+
 use fractum_math::Vec3;
 use fractum_parallel::{Exchange, gather};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::body::edges::BodyEdges;
+use crate::body::rate::RateCurves;
 use crate::body::{Body, DamageZone, ElementKind, Formulation, Region, Regularisation};
 use crate::damage::phase::PhaseLaw;
 use crate::element::regular_edge;
@@ -16,7 +19,7 @@ const SIZES_OF_LENGTH: f64 = 2.0;
 const ONE_SIZE: f64 = 1.5;
 
 /// Characteristic length that an edge of lowered or raised strength has at most, over the one at which softening snaps back.
-const IN_RESERVE: f64 = 0.9;
+pub(crate) const IN_RESERVE: f64 = 0.9;
 
 /// Strength and characteristic length of the edges of a body.
 pub(crate) struct Threshold {
@@ -32,6 +35,8 @@ pub(crate) struct Threshold {
     pub(crate) largest_length_ratio: f64,
     /// The law of the phase field, where there is one.
     pub(crate) phase: Option<PhaseLaw>,
+    /// How edges grow stronger with the rate of strain, where they do.
+    pub(crate) rate: Option<Arc<RateCurves>>,
 }
 
 impl Threshold {
@@ -76,7 +81,15 @@ impl Threshold {
             });
         }
         let known = known.map(<[u32]>::to_vec);
-        Ok(Threshold { known, strength, length, reduced_edges, largest_length_ratio: largest_ratio, phase })
+        Ok(Threshold {
+            known,
+            strength,
+            length,
+            reduced_edges,
+            largest_length_ratio: largest_ratio,
+            phase,
+            rate: zone.rate.clone(),
+        })
     }
 
     fn place(&self, edge: u32) -> usize {

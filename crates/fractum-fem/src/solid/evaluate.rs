@@ -114,6 +114,7 @@ impl Block {
                 outcome
             }
             BlockLaw::Edges(field) => {
+                field.rate.iter_mut().for_each(|rate| rate.pass(dt));
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
                 let by_fours = field.softens.is_unilateral() || field.is_mostly_damaged();
                 let mut law = EdgesInStep { field, cells, step, energy: start, dissipated: self.dissipated };

@@ -176,6 +176,11 @@ impl Softens {
         self.softening.residual_ratio(kappa, strength, length, self.restraint.modulus, self.fracture_energy)
     }
 
+    /// Characteristic length of an edge over the one at which its softening snaps back.
+    pub fn length_ratio(&self, strength: f64, length: f64) -> f64 {
+        length / self.softening.largest_length(self.restraint.modulus, strength, self.fracture_energy)
+    }
+
     /// What an edge of this strength sees whose equivalent stress is `q` [Pa].
     #[inline(always)]
     pub fn see(&self, edge: &EdgeDamage, strength: f64, stress: Sym3, q: f64) -> Seen {

@@ -9,6 +9,7 @@ mod damage;
 mod draw;
 mod interface;
 mod material;
+mod rate;
 
 use fractum_kernels::bond::InterfaceFailure;
 use fractum_kernels::material::{CriterionKind, Plane, Softening};
@@ -128,6 +129,7 @@ const LAWS: &[Row] = &[
     Row { law: "bedding in space", holds: |draw| bedding::bedding(draw, None) },
     Row { law: "bedding, plane strain", holds: |draw| bedding::bedding(draw, Some(Plane::Strain)) },
     Row { law: "bedding, plane stress", holds: |draw| bedding::bedding(draw, Some(Plane::Stress)) },
+    Row { law: "rate of strain", holds: rate::onset },
 ];
 
 #[test]

@@ -128,10 +128,10 @@ fn hash_of_divided(scene: &Scene) -> u128 {
     // A list is its length, and what it holds.
     add(&hash, &state.before_bodies());
     add(&hash, &bodies.len());
-    for (index, BodyState { kinematics, alive, edges: _, elements, phase }) in bodies.iter().enumerate() {
+    for (index, BodyState { kinematics, alive, edges: _, elements, phase, rates }) in bodies.iter().enumerate() {
         add(&hash, &(kinematics, alive));
         neighbours::each_history(&scene.solid, index, |count| add(&hash, &count), |history| add(&hash, history));
-        add(&hash, &(elements, phase));
+        add(&hash, &(elements, phase, rates));
     }
     add(&hash, &state.between_bodies_and_stress());
     add(&hash, &neighbours::block_count(&scene.solid));

@@ -2,11 +2,51 @@
 
 use fractum_case::build::WeibullReport;
 use fractum_case::model::{BodyKind, Case, Distribution, Reference};
+use fractum_fem::RateCurves;
 use fractum_output::number::quantity;
+use fractum_scene::Scene;
 
 use super::Plan;
 
 impl Plan {
+    /// How much stronger bodies may get by the rate of strain, and what their elements permit of it.
+    pub(super) fn describe_rates(&mut self, case: &Case, scene: &Scene) {
+        let solids = case.bodies.iter().filter_map(|body| match &body.kind {
+            BodyKind::Solid(solid) => Some((&body.name.value, solid)),
+            _ => None,
+        });
+        for (index, (name, solid)) in solids.enumerate() {
+            let damage = case.materials[solid.material].damage.as_ref().filter(|_| solid.damage);
+            let Some(rate) = damage.and_then(|damage| damage.value.rate.as_ref()) else { continue };
+            let RateCurves { strength, compression, energy } = &rate.value;
+            let range = |curve: &[[f64; 2]]| {
+                let factors = || curve.iter().map(|point| point[1]);
+                let (least, most) = (factors().fold(f64::INFINITY, f64::min), factors().fold(0.0, f64::max));
+                let [first, last] = [curve.first(), curve.last()].map(|point| point.map_or(0.0, |point| point[0]));
+                let rates = [first, last].map(|rate| quantity(rate, "1/s"));
+                format!("{least:.2} to {most:.2} times from {} to {}", rates[0], rates[1])
+            };
+            let mut text = format!("{name}: by the rate of strain {} in tension", range(strength));
+            if let Some((curve, _)) = compression {
+                text += &format!(", {} in compression", range(curve));
+            }
+            if !energy.is_empty() {
+                text += &format!("; fracture energy {}", range(energy));
+            }
+            self.add("rate", text);
+            // The largest length goes with one over the strength squared.
+            let (_, ratio) = scene.solid.length_report(index);
+            let most = (ratio.max(0.9) / ratio).sqrt();
+            let grows = if energy.is_empty() { "" } else { ", more where the fracture energy grows" };
+            self.add(
+                "",
+                format!(
+                    "its largest elements permit {most:.2} times{grows}; what exceeds this is cut and told at the end"
+                ),
+            );
+        }
+    }
+
     pub(super) fn describe_scatter(&mut self, case: &Case, weibull: &[WeibullReport]) {
         for report in weibull {
             let WeibullReport { body, measure, correlation_length, grows, sizes, mean, variation, reference, weakest } =

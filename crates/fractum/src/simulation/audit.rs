@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use fractum_case::model::ProbeKind;
-use fractum_fem::{cracks, motion, neighbours};
+use fractum_fem::{RateReport, cracks, motion, neighbours};
 use fractum_math::Vec3;
 use fractum_output::number::{at_instant, percent, quantity};
 use fractum_output::summary::LargestOverlap;
@@ -80,6 +80,7 @@ impl Simulation {
         self.warn_of_single_nodes()?;
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
+        self.tell_rates()?;
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
             (end, _) => end,
@@ -143,6 +144,29 @@ impl Simulation {
         });
         let found: Vec<Warning> = found.collect();
         found.into_iter().try_for_each(|found| self.warn(found))
+    }
+
+    /// Tells at which rates of strain edges began to break, where strength grows with them, and warns of elements too large for it.
+    fn tell_rates(&mut self) -> Result<(), Failure> {
+        let solid = &self.scene.solid;
+        let reports =
+            (0..solid.body_count()).filter_map(|body| Some((&solid.body(body).name, solid.rate_report(body)?)));
+        let reports: Vec<(String, RateReport)> =
+            reports.filter(|(_, report)| report.count > 0).map(|(name, report)| (name.clone(), report)).collect();
+        for (name, RateReport { count, limited, rates }) in reports {
+            let [least, mean, most] = rates.map(|rate| quantity(rate, "1/s"));
+            self.messages.tell(&format!(
+                "body \"{name}\": {count} edges began to break, at rates of strain from {least} to {most} (geometric mean {mean})"
+            ))?;
+            if limited > 0 {
+                let text = format!(
+                    "{limited} of {count} edges broke below the strength of their rate of strain: their elements are too large for it"
+                );
+                let found = Warning::new(Code::RateLimited, format!("body \"{name}\""), text);
+                self.warn(found.remedy("refine the mesh where cracks go"))?;
+            }
+        }
+        Ok(())
     }
 
     /// Warns of the first of a kind.
