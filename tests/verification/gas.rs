@@ -75,6 +75,7 @@ fn blast_in(solid: Solid, facets: Vec<[u32; 3]>, symmetry: SymmetryPlanes, press
         outside_pressure: 1e5,
         symmetry,
         holes: vec![GasHole {
+            stemming: None,
             ends: HoleEnds::find(&solid, &facets, symmetry, false).unwrap(),
             facets,
             charge: Charge::State { pressure, temperature: 2500.0 },

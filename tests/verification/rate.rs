@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, DamageLaw, Elastic, ElementKind, Formulation, LocalDamping, Plane, RateCurves, Region, Softening, Solid,
-    fields, rate_factor,
+    rate_factor,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
@@ -75,7 +75,7 @@ fn body(bar: &Bar) -> (Vec<Vec3>, Body, [f64; 2]) {
     let law = DamageLaw { softening: bar.softening, ..DamageLaw::rankine(STRENGTH, FRACTURE_ENERGY) };
     let body = Body::new("bar", bar.kind, elements, elastic).with_damage(law);
     let mut body = Body { formulation: bar.formulation, plane: bar.plane, thickness: width, ..body };
-    let middle = |p: &Vec3| (p.x - 0.5 * length).abs() < 0.8 * size;
+    let middle = |p: &Vec3| (p.x - 0.5 * length).abs() < 1.7 * size;
     let marked = body.edge_midpoints(&nodes).iter().map(middle).collect();
     let zone = body.damage.as_mut().unwrap();
     zone.region = Region::Edges(marked);
@@ -114,13 +114,12 @@ fn scene(bar: &Bar, rate: f64, end: f64) -> Scene {
     Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings)
 }
 
-/// Largest mean stress across the middle over the strength at rest, and energy of the crack over G_f A; the mean rate at which edges began to break, and the
-/// number of steps.
+/// Largest force through the middle over that of the strength at rest, energy of the crack over G_f A, and the mean rate at which edges began to break.
 struct Torn {
     strength: f64,
     energy: f64,
     rate: f64,
-    /// Of the load at the held ends, which inertia raises.
+    /// Largest load at the held end over that of the strength at rest: inertia of what lies between is part of it.
     reaction: f64,
 }
 
@@ -135,29 +134,27 @@ fn time_to_tear(bar: &Bar, rate: f64) -> f64 {
 fn torn(bar: &Bar, rate: f64) -> Torn {
     let mut scene = scene(bar, rate, time_to_tear(bar, rate));
     let (_, _, [length, width]) = body(bar);
-    let corners = bar.kind.node_count();
-    let elements = scene.solid.body(0).elements.clone();
-    let middle: Vec<usize> = (0..elements.len())
-        .filter(|&e| {
-            let mean = elements[e][..corners].iter().map(|&n| scene.solid.reference[n as usize].x).sum::<f64>();
-            (mean / corners as f64 - 0.5 * length).abs() < 0.5 * bar.size
-        })
-        .collect();
-    let right: Vec<u32> =
-        (0..).zip(&scene.solid.reference).filter(|(_, p)| p.x > length - 1e-9).map(|(n, _)| n).collect();
+    let nodes_where = |keep: &dyn Fn(f64) -> bool| -> Vec<u32> {
+        (0..).zip(&scene.solid.reference).filter(|(_, p)| keep(p.x)).map(|(n, _)| n).collect()
+    };
+    let right = nodes_where(&|x| x > length - 1e-9);
+    // What lies behind a section through the cells where the bar parts.
+    let behind = nodes_where(&|x| x > 0.5 * length + 0.25 * bar.size);
+    let momentum = |scene: &Scene| {
+        let solid = &scene.solid;
+        behind.iter().map(|&n| solid.mass[n as usize] * solid.velocity[n as usize].x).sum::<f64>()
+    };
     let places = scene.supports().places(&right);
     let (mut peak, mut reaction) = (0.0f64, 0.0f64);
+    // The force falls from the onset on.
+    let onset = rate_factor(&strength(), rate) * STRENGTH / CONCRETE.young_modulus / rate;
     while !scene.is_finished() {
+        let before = (scene.clock.time, momentum(&scene));
         scene.step(true).unwrap();
-        reaction = reaction.max(scene.supports().reaction(&places, &Vec3::x()));
-        if scene.counts().removed_elements == 0 {
-            let stress = fields::element_fields(&scene.solid, 0);
-            let (mut sum, mut volume) = (0.0, 0.0);
-            for &e in &middle {
-                let own = scene.solid.element_volume(0, e as u32);
-                (sum, volume) = (sum + own * stress[e].0.0[0], volume + own);
-            }
-            peak = peak.max(sum / volume);
+        if scene.clock.time < 1.5 * onset {
+            let load = scene.supports().reaction(&places, &Vec3::x());
+            let inertia = (momentum(&scene) - before.1) / (scene.clock.time - before.0);
+            (reaction, peak) = (reaction.max(load), peak.max(load - inertia));
         }
     }
     let ledger = scene.ledger();
@@ -165,17 +162,19 @@ fn torn(bar: &Bar, rate: f64) -> Torn {
     assert!(scene.counts().removed_elements > 0, "{bar:?} {rate}: torn");
     let area = width * width;
     Torn {
-        strength: peak / STRENGTH,
+        strength: peak / (area * STRENGTH),
         energy: (ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]) / (area * FRACTURE_ENERGY),
         rate: scene.solid.rate_report(0).unwrap().rates[1],
         reaction: reaction / (area * STRENGTH),
     }
 }
 
-/// What misses the curve: the rate by 10 %, the strength by 10 %, the energy over that at rest by the energy of the slow bar.
+/// What misses the curve: the strength by 2 %, the rate by 5 %, the energy over that of a slow bar by 5 %, 12 % of plain elements.
 fn misses(name: &str, bar: &Bar, rates: &[f64], slow: f64) -> Vec<String> {
     let mut missed = Vec::new();
     for &rate in rates {
+        // A wave must cross the bar while the stress grows.
+        let bar = &Bar { size: bar.size / (rate / 3.0).max(1.0).powf(0.6), ..*bar };
         let Torn { strength: found, energy, rate: measured, reaction } = torn(bar, rate);
         let factor = rate_factor(&strength(), rate);
         let grown = if bar.energy_grows { factor } else { 1.0 };
@@ -184,10 +183,10 @@ fn misses(name: &str, bar: &Bar, rates: &[f64], slow: f64) -> Vec<String> {
             slow * grown
         );
         println!("{text}");
-        if (found / factor - 1.0).abs() > 0.1
-            || (measured / rate - 1.0).abs() > 0.2
-            || (energy / slow / grown - 1.0).abs() > 0.05
-        {
+        // Plain elements lose more or less of it by their size, whatever the rate.
+        let allowed = if bar.formulation == Formulation::Smoothed { 0.05 } else { 0.12 };
+        let is_energy = (energy / slow / grown - 1.0).abs() < allowed;
+        if (found / factor - 1.0).abs() > 0.02 || (measured / rate - 1.0).abs() > 0.05 || !is_energy {
             missed.push(text);
         }
     }
@@ -199,16 +198,69 @@ fn bars_have_the_strength_and_the_energy_of_their_rate() {
     let mut missed = Vec::new();
     for (name, bar) in [("plane", PLATE), ("space", BLOCK)] {
         for formulation in [Formulation::Smoothed, Formulation::Standard] {
+            let slow =
+                torn(&Bar { formulation, energy_grows: true, ..bar }, 1.0).energy / rate_factor(&strength(), 1.0);
+            println!("{name} {formulation:?}: {slow:.3} of the fracture energy at 1 per second");
             for energy_grows in [false, true] {
                 let bar = Bar { formulation, energy_grows, ..bar };
-                missed.extend(misses(
-                    &format!("{name} {formulation:?} {energy_grows}"),
-                    &bar,
-                    &[1.0, 10.0, 100.0],
-                    1.0,
-                ));
+                let name = format!("{name} {formulation:?} {energy_grows}");
+                missed.extend(misses(&name, &bar, &[10.0, 100.0], slow));
             }
         }
     }
     assert!(missed.is_empty(), "{missed:#?}");
+}
+
+#[test]
+fn they_have_them_beside_the_settings_of_the_others() {
+    let mut missed = Vec::new();
+    let mut look = |name: &str, bar: Bar| {
+        let bar = Bar { energy_grows: true, ..bar };
+        let slow = torn(&bar, 1.0).energy / rate_factor(&strength(), 1.0);
+        missed.extend(misses(name, &bar, &[50.0], slow));
+    };
+    for softening in [Softening::Linear, Softening::PETERSSON] {
+        look(&format!("{softening:?}"), Bar { softening, ..PLATE });
+    }
+    for poisson_ratio in [0.0, 0.3, 0.45] {
+        look(&format!("plane strain {poisson_ratio}"), Bar { poisson_ratio, plane: Plane::Strain, ..PLATE });
+        look(&format!("plane stress {poisson_ratio}"), Bar { poisson_ratio, ..PLATE });
+        look(&format!("space {poisson_ratio}"), Bar { poisson_ratio, ..BLOCK });
+    }
+    look("half the element", Bar { size: 0.001, ..PLATE });
+    look("half the step", Bar { safety: 0.4, ..PLATE });
+    look("rows", Bar { seed: None, ..PLATE });
+    look("another mesh", Bar { seed: Some(4), ..PLATE });
+    look("damped", Bar { damping: 0.05, ..PLATE });
+    assert!(missed.is_empty(), "{missed:#?}");
+}
+
+#[test]
+fn a_run_goes_on_within_the_measurement_of_a_rate_and_has_the_same_bits_on_any_threads() {
+    for bar in [PLATE, Bar { formulation: Formulation::Standard, ..PLATE }, BLOCK] {
+        let end = time_to_tear(&bar, 50.0);
+        let on = |threads: usize, pause: Option<f64>| -> SceneState {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut run = scene(&bar, 50.0, end);
+                while !run.is_finished() && pause.is_none_or(|pause| run.clock.time < pause) {
+                    run.step(true).unwrap();
+                }
+                if pause.is_none() {
+                    return run.state();
+                }
+                let mut later = scene(&bar, 50.0, end);
+                later.restore(run.state());
+                while !later.is_finished() {
+                    later.step(true).unwrap();
+                }
+                later.state()
+            })
+        };
+        let one = on(1, None);
+        // Stress at 50 per second grows to the strength in 2.3 ft/E/50 = 4.6 us.
+        for (threads, pause) in [(2, None), (7, None), (1, Some(3e-6)), (2, Some(4e-6)), (1, Some(2e-5))] {
+            assert!(on(threads, pause) == one, "{bar:?}: {threads} threads, paused at {pause:?}");
+        }
+    }
 }

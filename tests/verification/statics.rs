@@ -98,6 +98,7 @@ fn bar(formulation: Formulation) -> Solid {
         strength_by_chance: Vec::new(),
         reduce_strength_to_fit: false,
         regularisation: None,
+        rate: None,
     };
     Solid::new(mesh.nodes, vec![Body { damage: Some(zone), ..body }]).unwrap()
 }

@@ -29,6 +29,6 @@ mod law;
 mod network;
 mod slit;
 
-pub use law::{EquationOfState, Jwl, Law, NobleAbel, PerfectGas, PressureLine};
+pub use law::{EquationOfState, Explosive, Jwl, Law, NobleAbel, PerfectGas, PressureLine};
 pub use network::{Amount, Contents, Network};
 pub use slit::{Passage, SlitFlow, Upstream};

@@ -51,11 +51,11 @@ pub use error::{SceneError, StepError};
 pub use excavation::Excavation;
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
-pub use fractum_gas::{Amount, EquationOfState, Jwl, NobleAbel, PerfectGas, SlitFlow};
+pub use fractum_gas::{Amount, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;
 pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
 pub use fragment::{Fragment, solid_pieces};
-pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, SymmetryPlanes};
+pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, Stemming, SymmetryPlanes};
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };

@@ -244,6 +244,17 @@ impl Plan {
                 format!("firing sequence of {holes} holes from {} to {}", quantity(first, "s"), quantity(last, "s")),
             );
         }
+        let front = |load: &Load| match &load.kind {
+            LoadKind::Pressure { detonation, .. } => detonation.map(|front| front.velocity),
+            _ => None,
+        };
+        let fronts = case.loads.iter().filter_map(front);
+        let (slowest, fastest) = fronts.fold((f64::INFINITY, 0.0f64), |(a, b), v| (v.min(a), v.max(b)));
+        if fastest > 0.0 {
+            let [slowest, fastest] = [slowest, fastest].map(|velocity| quantity(velocity, "m/s"));
+            let range = if slowest == fastest { fastest } else { format!("{slowest} to {fastest}") };
+            self.add("", format!("pressures begin behind fronts of detonation of {range}"));
+        }
         for load in case.loads.iter().filter(|load| delay(load).is_none()) {
             let on = match load.kind.on() {
                 Some((on, GroupUse::Facets)) => facets_of(mesh, on, thickness),

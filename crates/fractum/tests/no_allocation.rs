@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use fractum_dem::{BeamSection, Particles};
-use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, Solid, Viscosity, cracks, motion};
+use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, RateCurves, Solid, Viscosity, cracks, motion};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
@@ -254,6 +254,15 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = pulled(nodes.clone(), armed(plain.clone()), 0.5, calm);
         assert_eq!(requests(&mut scene), 0, "standard with growing damage");
         assert!(cracks::fracture(&scene.solid).damaged_edges > 0);
+
+        for body in [&smoothed, &plain] {
+            let mut body = armed(body.clone());
+            let curves = RateCurves { strength: vec![[1e-3, 1.0], [1e3, 1.3]], compression: None, energy: Vec::new() };
+            body.damage.as_mut().unwrap().rate = Some(Arc::new(curves));
+            let mut scene = pulled(nodes.clone(), body, 0.5, calm);
+            assert_eq!(requests(&mut scene), 0, "strength by rate");
+            assert!(scene.solid.rate_report(0).is_some_and(|report| report.count > 0 && report.rates[2] > 1.0));
+        }
 
         let mut scene = graded(nodes.clone(), armed(smoothed.clone()));
         assert_eq!(requests(&mut scene), 0, "steps of two sizes");

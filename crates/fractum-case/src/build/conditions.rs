@@ -1,6 +1,7 @@
 //! Supports and loads on the groups of the mesh.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use fractum_fem::{ElementKind, facet_area};
 use fractum_math::Vec3;
@@ -8,8 +9,8 @@ use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pr
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function, use_in_words};
-use crate::Spanned;
-use crate::model::{self, Components, GroupUse, InCracks, LoadKind, Selection};
+use crate::model::{self, Components, Detonation, GroupUse, InCracks, LoadKind, Selection};
+use crate::{Spanned, TimeFunction};
 
 impl Context<'_> {
     pub(super) fn supports(&mut self, numbering: &Numbering) -> Vec<Support> {
@@ -51,9 +52,15 @@ impl Context<'_> {
                     let facets = self.selected_facets(on, numbering, surface);
                     push_nodal(&mut loads, &surface.areas(&facets), traction);
                 }
-                (LoadKind::Pressure { on, pressure, in_cracks }, LoadedPoints::Nodes(numbering, surface)) => {
+                (
+                    LoadKind::Pressure { on, pressure, in_cracks, detonation },
+                    LoadedPoints::Nodes(numbering, surface),
+                ) => {
                     let (facets, thickness) = (self.selected_facets(on, numbering, surface), surface.thickness);
-                    let value = function(&pressure.value);
+                    let value = match detonation {
+                        None => function(&pressure.value),
+                        Some(front) => behind_front(&pressure.value, *front, facets.iter().flatten(), numbering),
+                    };
                     loads.push(match in_cracks {
                         None => Load::Pressure(Pressure { facets, thickness, value }),
                         Some(InCracks { front_speed }) => {
@@ -229,6 +236,21 @@ impl<'a> Surface<'a> {
         }
         merged
     }
+}
+
+/// A pressure behind a front; ahead of it there is none.
+fn behind_front<'a>(
+    pressure: &TimeFunction,
+    front: Detonation,
+    nodes: impl Iterator<Item = &'a u32>,
+    numbering: &Numbering,
+) -> fractum_scene::TimeFunction {
+    let first = front.first(nodes.map(|&node| numbering.positions[node as usize]));
+    let (pressure, begin) = (pressure.clone(), pressure.delay().unwrap_or(0.0));
+    Arc::new(move |time, place: &Vec3| {
+        let after = time - front.arrival(place, first);
+        if after < begin { 0.0 } else { pressure.value(after, *place) }
+    })
 }
 
 /// The nodes of a facet whatever its direction; an edge, in whatever order, repeats its higher node.

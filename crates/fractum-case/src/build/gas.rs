@@ -37,7 +37,13 @@ pub(super) fn gas(
         let source = hole.source.as_ref();
         let source =
             source.map(|[mass, energy]| GasSource { mass: function(&mass.value), energy: function(&energy.value) });
-        holes.push(GasHole { facets, ends: ends.unwrap_or_default(), charge: hole.charge, source });
+        holes.push(GasHole {
+            facets,
+            ends: ends.unwrap_or_default(),
+            charge: hole.charge,
+            source,
+            stemming: hole.stemming,
+        });
     }
     if !context.diagnostics.is_empty() {
         return None;

@@ -2,7 +2,7 @@
 
 use super::{key, names};
 use crate::key_kind::{KeyDoc, KeyKind as K};
-use crate::model::GasLaw;
+use crate::model::{GasLaw, Preset};
 use crate::unit::Dimension as D;
 
 #[rustfmt::skip] // one key per line reads as a table
@@ -12,7 +12,8 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("gas.heat_ratio", K::Quantity(D::NONE), "", "Ratio of heat capacities γ, > 1; required but for jwl"),
     key("gas.gas_constant", K::Quantity(D::HEAT_CAPACITY), "", "Gas constant per mass, > 0: 8.314 J/(mol K) over the molar mass; required but for jwl"),
     key("gas.covolume", K::Quantity(D::SPECIFIC_VOLUME), "", "noble-abel only, required there: volume that the molecules of a mass take, > 0"),
-    key("gas.jwl", K::Table, "", "jwl only, required there: constants of the law"),
+    key("gas.explosive", K::Choice(names::<Preset>), "", "An explosive by name, of the list below: law = \"jwl\" with its constants, energy and velocity of detonation"),
+    key("gas.jwl", K::Table, "", "jwl only, required there without explosive: constants of the law"),
     key("gas.jwl.a", K::Quantity(D::PRESSURE), "required", "A"),
     key("gas.jwl.b", K::Quantity(D::PRESSURE), "required", "B"),
     key("gas.jwl.r1", K::Quantity(D::NONE), "required", "R₁, > 0"),
@@ -36,7 +37,15 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("gas.holes[].pressure", K::Quantity(D::PRESSURE), "", "Pressure at the start, ≥ 0, with temperature; not with jwl"),
     key("gas.holes[].temperature", K::Quantity(D::TEMPERATURE), "", "Temperature at the start, > 0; required with pressure"),
     key("gas.holes[].mass", K::Quantity(D::MASS), "", "Mass at the start, ≥ 0, instead of pressure. In 2D it is that of the whole thickness, at planes of symmetry that on this side"),
-    key("gas.holes[].energy", K::Quantity(D::ENERGY), "", "Internal energy at the start, ≥ 0; required with mass"),
+    key("gas.holes[].energy", K::Quantity(D::ENERGY), "", "Internal energy at the start, ≥ 0; required with mass, but for an explosive, whose mass has its energy"),
+    key("gas.holes[].detonation", K::Table, "", "The mass burns along the hole behind a front, instead of being there at the start"),
+    key("gas.holes[].detonation.length", K::Quantity(D::LENGTH), "required", "Length of the charge, > 0: it burns for this over the velocity"),
+    key("gas.holes[].detonation.velocity", K::Quantity(D::VELOCITY), "that of the explosive", "Velocity of detonation, > 0; required without explosive"),
+    key("gas.holes[].detonation.delay", K::Quantity(D::TIME), "\"0 s\"", "When it begins, ≥ 0"),
+    key("gas.holes[].stemming", K::Table, "", "Stemming that is ejected: from then on gas flows out through its length of the hole"),
+    key("gas.holes[].stemming.diameter", K::Quantity(D::LENGTH), "required", "Diameter of the hole there, > 0"),
+    key("gas.holes[].stemming.length", K::Quantity(D::LENGTH), "required", "Length of the stemming, > 0"),
+    key("gas.holes[].stemming.ejected_at", K::Quantity(D::TIME), "required", "When it has left the hole, ≥ 0"),
     key("gas.holes[].mass_rate", K::TimeFunction(D::MASS_RATE), "", "Mass that comes in over time; without pressure and mass the hole is empty at the start"),
     key("gas.holes[].energy_rate", K::TimeFunction(D::POWER), "", "Energy that comes in with it, that of its pressure included; required with mass_rate"),
 ];

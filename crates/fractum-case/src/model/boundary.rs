@@ -91,6 +91,38 @@ pub struct InCracks {
 /// Components along x, y, z; `None` = zero.
 pub type Components = [Option<Spanned<TimeFunction>>; 3];
 
+/// A front of detonation that runs along a hole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Detonation {
+    /// Velocity of detonation [m/s], > 0.
+    pub velocity: f64,
+    /// Direction in which it runs: from the first node of the facets on, or from the primer both ways. In all directions if absent.
+    pub along: Option<Vec3>,
+    /// Where it begins [m].
+    pub primer: Option<Vec3>,
+}
+
+impl Detonation {
+    /// When it comes to a place after it has begun [s].
+    ///
+    /// - `first`: least place along its direction of what it runs through [m]
+    pub fn arrival(&self, place: &Vec3, first: f64) -> f64 {
+        let distance = match (self.along, self.primer) {
+            (Some(along), Some(primer)) => along.dot(&(place - primer)).abs(),
+            (Some(along), None) => along.dot(place) - first,
+            (None, Some(primer)) => (place - primer).norm(),
+            (None, None) => 0.0,
+        };
+        distance / self.velocity
+    }
+
+    /// Least place along its direction among these [m].
+    pub fn first(&self, places: impl Iterator<Item = Vec3>) -> f64 {
+        let along = self.along.unwrap_or_default();
+        places.map(|place| along.dot(&place)).fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// Kinds of loads.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LoadKind {
@@ -116,6 +148,8 @@ pub enum LoadKind {
         pressure: Spanned<TimeFunction>,
         /// How it enters the cracks that are open to the facets; not at all if absent.
         in_cracks: Option<InCracks>,
+        /// The front behind which it acts; everywhere at once if absent.
+        detonation: Option<Detonation>,
     },
     /// Acceleration of the whole scene [m/s²].
     Gravity {

@@ -1,10 +1,10 @@
 //! Gas in holes and in the cracks that open to them.
 
-use fractum_scene::{Charge, EquationOfState, SlitFlow};
+use fractum_scene::{Charge, EquationOfState, Explosive, SlitFlow, Stemming};
 
 use super::Selection;
 use crate::choice::choice;
-use crate::{Place, Spanned, TimeFunction};
+use crate::{Choice, Place, Spanned, TimeFunction};
 
 /// The gas of a case: one law, any number of holes.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +38,24 @@ pub struct GasHole {
     pub charge: Charge,
     /// Mass [kg/s] and energy [W] that come in over time.
     pub source: Option<[Spanned<TimeFunction>; 2]>,
+    /// Stemming that is ejected.
+    pub stemming: Option<Stemming>,
+}
+
+/// Explosives of the open literature by name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Preset(pub Explosive);
+
+impl Choice for Preset {
+    const NAMES: &'static [(&'static str, Self)] = &[
+        ("anfo", Preset(Explosive::ANFO)),
+        ("emulsion", Preset(Explosive::EMULSION)),
+        ("tnt", Preset(Explosive::TNT)),
+        ("petn-1.77", Preset(Explosive::PETN_1770)),
+        ("petn-1.50", Preset(Explosive::PETN_1500)),
+        ("petn-1.26", Preset(Explosive::PETN_1260)),
+        ("petn-0.88", Preset(Explosive::PETN_880)),
+    ];
 }
 
 /// Names of the laws.

@@ -29,9 +29,9 @@ use fractum_scene::EnergyKind;
 
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource};
-pub use boundary::{Components, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
+pub use boundary::{Components, Detonation, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
 pub use excavation::Excavation;
-pub use gas::{Gas, GasHole, GasLaw};
+pub use gas::{Gas, GasHole, GasLaw, Preset};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use interface::{Interface, InterfaceFaces};

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use fractum_math::Vec3;
 use fractum_output::warning::Code;
 
+use super::detonation::{self, Acts};
 use super::firing::{self, Pulses};
 use super::time_functions::time_function;
 use crate::model::{InCracks, Load, LoadKind, Motion, Support, SurfaceSupport};
@@ -184,8 +185,8 @@ fn load(table: Table<'_>, pulses: &Pulses) -> Option<Vec<Load>> {
         for key in ["group", "where"] {
             table.refuse(key, "with firing, whose rows name the groups");
         }
-        let in_cracks = in_cracks(&table);
-        let loads = firing::sequence(&table, pulses, name, in_cracks);
+        let how = acts(&table);
+        let loads = firing::sequence(&table, pulses, name, how);
         table.finish("here");
         return loads;
     }
@@ -204,12 +205,26 @@ fn load(table: Table<'_>, pulses: &Pulses) -> Option<Vec<Load>> {
         "gravity" => by_components().map(|acceleration| LoadKind::Gravity { acceleration }),
         _ => {
             let pressure = time_function(&table, "pressure").spanned().required();
-            let in_cracks = in_cracks(&table);
-            pressure.and_then(|pressure| Some(LoadKind::Pressure { on: on?, pressure, in_cracks: in_cracks? }))
+            table.refuse("scatter", "without firing, whose delays it is of");
+            let how = acts(&table);
+            pressure.and_then(|pressure| {
+                let Acts { in_cracks, detonation } = how?;
+                Some(LoadKind::Pressure { on: on?, pressure, in_cracks, detonation })
+            })
         }
     };
     table.finish("here");
     Some(vec![Load { name, kind: kind? }])
+}
+
+/// Where and when a pressure acts beside its facets and time.
+fn acts(table: &Table<'_>) -> Option<Acts> {
+    let (in_cracks, detonation) = (in_cracks(table), detonation::detonation(table));
+    let acts = Acts { in_cracks: in_cracks?, detonation: detonation? };
+    if acts.in_cracks.is_some() {
+        table.refuse("detonation", "with in_cracks, whose cracks have the pressure of all facets");
+    }
+    Some(acts)
 }
 
 /// The keys `in_cracks` and `front_speed` of a pressure; nothing where one of them is wrong.

@@ -1,8 +1,9 @@
 //! `[pulses]` and firing sequences: which hole fires when, with which pressure.
 
+use super::detonation::{Acts, DelayScatter};
 use super::table_file;
 use super::time_functions::time_function_of;
-use crate::model::{InCracks, Load, LoadKind, Selection};
+use crate::model::{Load, LoadKind, Selection};
 use crate::reader::{Reader, Table};
 use crate::tree::{Node, Value};
 use crate::unit::Dimension;
@@ -30,12 +31,12 @@ type Row = [Node; 3];
 
 /// Reads the firing sequence of a load: a pressure for every row.
 ///
-/// - `in_cracks`: whether pressures enter cracks; nothing where that is wrong
+/// - `acts`: how pressures act beside their facets; nothing where that is wrong
 pub(super) fn sequence(
     table: &Table<'_>,
     pulses: &Pulses,
     name: Option<Spanned<String>>,
-    in_cracks: Option<Option<InCracks>>,
+    acts: Option<Acts>,
 ) -> Option<Vec<Load>> {
     let reader = table.reader;
     let node = table.node("firing")?;
@@ -48,16 +49,21 @@ pub(super) fn sequence(
             None
         }
     }?;
+    let scatter = DelayScatter::read(table)?;
     let loads: Vec<Option<Load>> = rows
         .iter()
-        .map(|[group, delay, pulse]| {
+        .enumerate()
+        .map(|(row, [group, delay, pulse])| {
             let delay = delay_of(reader, delay);
             let pulse = pulses.find(reader, pulse);
             let Value::Text(hole) = &group.value else { return None };
             let on = Selection::of_group(Spanned::new(hole.clone(), group.place.clone()));
-            let pressure = TimeFunction::Delayed(delay?, Box::new(pulse?));
+            let delay = delay?;
+            let delay = scatter.as_ref().map_or(delay, |scatter| scatter.of(row, delay));
+            let pressure = TimeFunction::Delayed(delay, Box::new(pulse?));
             let pressure = Spanned::new(pressure, group.place.clone());
-            Some(Load { name: name.clone(), kind: LoadKind::Pressure { on, pressure, in_cracks: in_cracks? } })
+            let Acts { in_cracks, detonation } = acts?;
+            Some(Load { name: name.clone(), kind: LoadKind::Pressure { on, pressure, in_cracks, detonation } })
         })
         .collect();
     loads.into_iter().collect()

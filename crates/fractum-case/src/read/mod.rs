@@ -4,6 +4,7 @@ mod bedding;
 mod bodies;
 mod bonded;
 mod boundary;
+mod detonation;
 mod excavation;
 mod expect;
 mod firing;

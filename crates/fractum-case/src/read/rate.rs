@@ -65,6 +65,11 @@ fn curve<'t, 'a>(
                 None
             }
         },
+        Value::Text(text) if text.starts_with("fib") => {
+            let note = Diagnostic::error(&node.place, node.found()).expected("the name of a standard");
+            table.reader.note(table.reader.suggest(note, text, RATE_PRESETS.into_iter(), "standards"));
+            None
+        }
         _ => of_expression(table, node),
     })
 }
@@ -106,7 +111,12 @@ fn of_expression(table: &Table<'_>, node: &Node) -> Option<Curve> {
         }
         curve.push([rate, factor]);
     }
-    Some(if field.constant_value().is_some() { vec![curve[0]] } else { curve })
+    Some(match field.constant_value() {
+        // A factor of 1 is none.
+        Some(1.0) => Vec::new(),
+        Some(_) => vec![curve[0]],
+        None => curve,
+    })
 }
 
 const POSSIBLE: &str = "a factor from 0.1 to 100";

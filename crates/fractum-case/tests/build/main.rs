@@ -4,6 +4,7 @@ mod about_axis;
 mod bedding;
 mod blast;
 mod contact_force;
+mod detonation;
 mod doubts;
 mod gas;
 mod heat;

@@ -18,7 +18,8 @@ fn the_sample_holds_every_key_of_the_list() {
         path.strip_prefix("solver.").is_some_and(|key| of.contains(&key) || key.starts_with("opening"))
     };
     let staged = |path: &str| path.contains("stages");
-    let products = |path: &str| path.starts_with("gas.jwl");
+    let burns = ["gas.jwl", "gas.explosive", "gas.holes[].detonation"];
+    let products = |path: &str| burns.iter().any(|key| path.starts_with(key));
     let left: Vec<&str> =
         missing.into_iter().filter(|path| !statics(path) && !staged(path) && !products(path)).collect();
     assert_eq!(left, ["solver.step"]);
@@ -27,6 +28,7 @@ fn the_sample_holds_every_key_of_the_list() {
     good(BONDED_AT_REST, &[]);
     good(&SMALL.replace("end = 1e-3", "kind = \"modes\"\ncount = 3\nlinear_solver = \"faer\""), &[]);
     good(&[SMALL, PRODUCTS].concat(), &[]);
+    good(&[SMALL, EXPLOSIVE].concat(), &[]);
     good(&SMALL.replace("[solver]\nend = 1e-3", STAGES), &[]);
     good(&SMALL.replace("[solver]\nend = 1e-3", EXCAVATION), &[]);
 }
@@ -62,6 +64,18 @@ heat_capacity = "1400 J/(kg K)"
 group = "hole"
 mass = "1 g"
 energy = "4 kJ"
+"#;
+
+/// A charge that burns, with all of its keys.
+const EXPLOSIVE: &str = r#"[gas]
+explosive = "anfo"
+[[gas.holes]]
+group = "hole"
+mass = "1 g"
+[gas.holes.detonation]
+length = "5 cm"
+velocity = "4 km/s"
+delay = "1 us"
 "#;
 
 /// A bonded body at rest, with the key of the static solver that only such bodies have.
@@ -138,10 +152,12 @@ fn documented_defaults_are_the_defaults() {
     let breaking = SMALL.replace("[[bodies]]", "[materials.steel.fracture]\ntensile_strength = 1e9\n[[bodies]]");
     let vibrating = SMALL.replace("end = 1e-3", "kind = \"modes\"");
     let products = [SMALL, PRODUCTS].concat();
+    let explosive = [SMALL, EXPLOSIVE].concat();
     let perfect = text.replace("covolume = \"8e-4 m^3/kg\"\n", "").replace("noble-abel", "perfect-gas");
     let samples = [
         (products.as_str(), "steel", "bodies[0]", ""),
         (perfect.as_str(), "concrete", "bodies[0]", ""),
+        (explosive.as_str(), "steel", "bodies[0]", ""),
         (at_rest.as_str(), "steel", "bodies[0]", ""),
         (text.as_str(), "concrete", "bodies[0]", "loads[3].pressure"),
         (text.as_str(), "mortar", "bodies[2]", "supports[1].displacement.y"),
@@ -172,6 +188,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("NAME", material)
                 .replace("bodies[]", body)
                 .replace("loads[].in_cracks", "loads[2].in_cracks")
+                .replace("loads[].scatter", "loads[5].scatter")
                 .replace("gas.holes[]", "gas.holes[0]")
                 .replace("interfaces[].residual", "interfaces[1].residual")
                 .replace("interfaces[].dilation_angle", "interfaces[1].dilation_angle")

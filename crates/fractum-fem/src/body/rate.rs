@@ -15,12 +15,14 @@ pub struct RateCurves {
 
 impl RateCurves {
     /// The law of an edge.
-    pub(crate) fn law(&self) -> RateLaw<'_> {
+    ///
+    /// - `watched`: as [`RateCurves::watched`] finds it
+    pub(crate) fn law(&self, watched: f64) -> RateLaw<'_> {
         RateLaw {
             strength: &self.strength,
             compression: self.compression.as_ref().map(|(curve, ratio)| (&curve[..], *ratio)),
             energy: &self.energy,
-            watched: self.watched(),
+            watched,
         }
     }
 

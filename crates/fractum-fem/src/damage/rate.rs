@@ -49,8 +49,8 @@ impl RateField {
 
     /// The edges with their step.
     pub(crate) fn in_step(&mut self, dt: f64) -> (RateInStep<'_>, &mut [EdgeRate]) {
-        let RateField { curves, clock, edges, .. } = self;
-        (RateInStep { law: curves.law(), now: *clock, dt }, edges)
+        let RateField { curves, watched, clock, edges } = self;
+        (RateInStep { law: curves.law(*watched), now: *clock, dt }, edges)
     }
 }
 

@@ -1,11 +1,13 @@
 //! Equations of state, a file per law. A new law is its file, a variant of [`EquationOfState`] and an arm of `law`.
 
+mod explosive;
 mod jwl;
 mod noble_abel;
 mod perfect_gas;
 
 use serde::{Deserialize, Serialize};
 
+pub use explosive::Explosive;
 pub use jwl::Jwl;
 pub use noble_abel::NobleAbel;
 pub use perfect_gas::PerfectGas;

@@ -53,9 +53,8 @@ pub struct Waiting {
 
 /// What an edge keeps of its loading until damage begins, and from then on of the strength with which it began.
 ///
-/// The rate is the mean growth of the equivalent stress over Young's modulus, from half the strength at rest, or from the level above this at which the stress
-/// was last held, to the present. It decides when the strength is reached, and stays as it was then. A stress that grows by less than a twentieth of
-/// the strength is held.
+/// The rate is the mean growth of the equivalent stress over Young's modulus, from the last instant at which the stress was within a twentieth of the
+/// strength above its least value beyond the watched part, to the present. It decides when the strength is reached, and stays as it was then.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EdgeRate {
     /// When its stress was last beyond the watched part of the strength [s]; −∞ before.
@@ -102,8 +101,9 @@ impl EdgeRate {
         let growth = match (is_new, is_held) {
             // The step came from below the watched part.
             (true, _) if dt > 0.0 => (q - law.watched * strength) / dt,
-            (true, _) | (false, true) => 0.0,
-            (false, false) => (q - self.grows[1]) / (now - self.grows[0]),
+            (false, false) if now > self.grows[0] => (q - self.grows[1]) / (now - self.grows[0]),
+            // Held, or at rest.
+            _ => 0.0,
         };
         if is_held {
             self.grows = [now, q];
@@ -194,10 +194,10 @@ mod tests {
         let ripple = |t: f64| E * rate * t + 0.02 * STRENGTH * (t * 6e6).sin();
         let (_, found) = onset(ripple, dt);
         assert!((found / rate - 1.0).abs() < 0.05, "{found}");
-        // Held long at 0.7, with noise; then pulled.
+        // Held long beyond half of the strength, with noise; then pulled.
         let held = |t: f64| match t {
-            t if t < 1e-4 => 0.7 * STRENGTH * (t / 1e-6).min(1.0) * (1.0 + 0.01 * (t * 1e7).sin()),
-            _ => 0.7 * STRENGTH + E * rate * (t - 1e-4),
+            t if t < 1e-4 => 0.53 * STRENGTH * (t / 1e-6).min(1.0) * (1.0 + 0.01 * (t * 1e7).sin()),
+            _ => 0.53 * STRENGTH + E * rate * (t - 1e-4),
         };
         let (_, found) = onset(held, dt);
         assert!((found / rate - 1.0).abs() < 0.1, "{found}");

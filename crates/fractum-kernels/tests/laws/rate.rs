@@ -23,9 +23,9 @@ fn curve(draw: &mut Draw) -> Vec<[f64; 2]> {
 pub(crate) fn onset(draw: &mut Draw) -> Held {
     let (strength, compressive, energy) = (curve(draw), curve(draw), curve(draw));
     let ratio = draw.over_decades(1.5, 50.0);
-    let is_compression = draw.bits() % 2 == 0;
+    let is_compression = draw.bits().is_multiple_of(2);
     let watched = 0.5 * strength.iter().chain(&compressive).map(|p| p[1]).fold(1.0, f64::min);
-    let compression = (draw.bits() % 3 > 0).then_some((&compressive[..], ratio));
+    let compression = (!draw.bits().is_multiple_of(3)).then_some((&compressive[..], ratio));
     let law = RateLaw { strength: &strength, compression, energy: &energy, watched };
     let (modulus, at_rest) = (draw.over_decades(1e6, 1e12), draw.over_decades(1e3, 1e9));
     let length_ratio = [draw.over_decades(1e-6, 0.9), 0.9];

@@ -20,7 +20,7 @@ use cavity::Cavity;
 pub(crate) use cavity::enclosed_volume;
 pub use hole_ends::{HoleEnds, SymmetryPlanes};
 pub use measure::GasMeasure;
-pub use settings::{Charge, GasHole, GasSettings, GasSource};
+pub use settings::{Charge, GasHole, GasSettings, GasSource, Stemming};
 
 /// Part of its energy that a cell passes on as a facet between it and another removed element moves, at most.
 const LARGEST_EXCHANGE: f64 = 0.2;
@@ -50,7 +50,10 @@ pub struct Gas {
     /// Room of each cell: holes first, then those of the cracks in their order.
     cavities: Vec<Cavity>,
     volumes: Vec<f64>,
+    /// Out of holes with stemming first, then those of the cracks.
     passages: Vec<Passage>,
+    /// Number of passages out of holes.
+    vents: usize,
     /// Facet of each passage, its normal pointing into the first cell.
     facets: Vec<[u32; 3]>,
     walls: Vec<Wall>,
@@ -108,6 +111,10 @@ impl Gas {
             network.push_cell(amount);
             cavities.push(Cavity::hole(volume));
         }
+        let vents = (0..)
+            .zip(&holes)
+            .filter_map(|(cell, hole)| Some((hole.stemming?.passage(cell, f64::NEG_INFINITY), *hole.facets.first()?)));
+        let (passages, facets): (Vec<Passage>, Vec<[u32; 3]>) = vents.unzip();
         Gas {
             cracks: CrackNetwork::new(solid, holes.iter().map(|hole| hole.facets.clone()).collect()),
             network,
@@ -116,8 +123,9 @@ impl Gas {
             in_cracks,
             symmetry,
             volumes: Vec::new(),
-            passages: Vec::new(),
-            facets: Vec::new(),
+            vents: passages.len(),
+            passages,
+            facets,
             walls: Vec::new(),
             swept: Vec::new(),
             wall_area: Vec::new(),
@@ -196,7 +204,7 @@ impl Gas {
 
     /// Room of every cell and opening of every passage, as the nodes lie.
     fn update_rooms(&mut self, solid: &Solid) {
-        let Gas { cracks, holes, cavities, volumes, passages, .. } = self;
+        let Gas { cracks, holes, cavities, volumes, passages, vents, .. } = self;
         let (of_holes, of_cracks) = cavities.split_at_mut(holes.len());
         for (cavity, hole) in of_holes.iter_mut().zip(&*holes) {
             let at = |node: u32| solid.position(node as usize);
@@ -207,7 +215,7 @@ impl Gas {
         }
         volumes.clear();
         volumes.extend(cavities.iter().map(|cavity| cavity.volume));
-        for passage in passages {
+        for passage in &mut passages[*vents..] {
             let [one, other] = passage.cells.map(|cell| cavities.get(cell as usize).map(Cavity::opening));
             let (one, other) = (one.unwrap_or(f64::INFINITY), other.unwrap_or(f64::INFINITY));
             // Two halves one behind the other: as tight as the tighter one makes them.
@@ -257,6 +265,8 @@ impl Gas {
                 self.network.supply(cell, Amount { mass: rate(&source.mass), energy: rate(&source.energy) });
             }
         }
+        let stemmed = (0..).zip(&self.holes).filter_map(|(cell, hole)| Some(hole.stemming?.passage(cell, time)));
+        self.passages.iter_mut().zip(stemmed).for_each(|(passage, now)| *passage = now);
         self.exchange_across_facets(solid, elapsed);
         self.update_rooms(solid);
         self.network.flow(elapsed, &self.volumes, &self.passages);

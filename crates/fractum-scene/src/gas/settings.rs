@@ -1,4 +1,4 @@
-use fractum_gas::{Amount, EquationOfState, SlitFlow};
+use fractum_gas::{Amount, EquationOfState, Passage, SlitFlow};
 
 use super::hole_ends::{HoleEnds, SymmetryPlanes};
 use crate::time_function::TimeFunction;
@@ -33,6 +33,28 @@ pub struct GasHole {
     pub charge: Charge,
     /// What comes in over time.
     pub source: Option<GasSource>,
+    /// Its stemming, where that is ejected.
+    pub stemming: Option<Stemming>,
+}
+
+/// Stemming that closes a hole until it is ejected.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stemming {
+    /// Diameter of the hole there [m].
+    pub diameter: f64,
+    /// Length through which gas flows to the outside [m].
+    pub length: f64,
+    /// When it has left the hole [s].
+    pub ejected_at: f64,
+}
+
+impl Stemming {
+    /// The way to the outside from a cell: a slit of the same cross-section and hydraulic diameter; shut before the stemming is ejected.
+    pub(crate) fn passage(&self, cell: usize, time: f64) -> Passage {
+        let opening = if time < self.ejected_at { 0.0 } else { 0.5 * self.diameter };
+        let width = 0.5 * std::f64::consts::PI * self.diameter;
+        Passage { cells: [cell as u32, Passage::OUTSIDE], length: self.length, width, opening }
+    }
 }
 
 /// What a hole holds at the start.

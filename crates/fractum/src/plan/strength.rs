@@ -20,6 +20,9 @@ impl Plan {
             let Some(rate) = damage.and_then(|damage| damage.value.rate.as_ref()) else { continue };
             let RateCurves { strength, compression, energy } = &rate.value;
             let range = |curve: &[[f64; 2]]| {
+                if curve.is_empty() {
+                    return "as it is".to_owned();
+                }
                 let factors = || curve.iter().map(|point| point[1]);
                 let (least, most) = (factors().fold(f64::INFINITY, f64::min), factors().fold(0.0, f64::max));
                 let [first, last] = [curve.first(), curve.last()].map(|point| point.map_or(0.0, |point| point[0]));
