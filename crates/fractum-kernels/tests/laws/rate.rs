@@ -47,7 +47,7 @@ pub(crate) fn onset(draw: &mut Draw) -> Held {
         unreachable!()
     };
     let rate = draw.over_decades(1e-9, 1e5);
-    let edge = loaded(rate, draw.over_decades(30.0, 3000.0));
+    let edge = loaded(rate, draw.over_decades(30.0, 200.0));
     let (curve, seen) = match compression {
         Some((curve, ratio)) if is_compression => (curve, ratio * rate),
         _ => (&strength[..], rate),
@@ -60,7 +60,7 @@ pub(crate) fn onset(draw: &mut Draw) -> Held {
     hold(edge.is_limited == (factor > possible) || (factor / possible - 1.0).abs() < 1e-6, || format!("{edge:?}"))?;
     let [first, last] = [curve[0], curve[curve.len() - 1]].map(|point| point[1]);
     hold((first * (1.0 - 1e-12)..=last * (1.0 + 1e-12)).contains(&factor), || format!("{factor} is off the curve"))?;
-    let faster = loaded(rate * draw.over_decades(1.0, 1e3), 100.0);
+    let faster = loaded(rate * draw.over_decades(1.0, 1e3), 40.0);
     hold(faster.strength >= edge.strength.min(at_rest * possible) * (1.0 - 1e-9) || faster.is_limited, || {
         format!("{faster:?} is weaker than {edge:?}")
     })
