@@ -197,7 +197,8 @@ pub(crate) fn spring_any_way(draw: &mut Draw) -> Held {
     let (sine, cosine) = draw.between(-3.0, 3.0).sin_cos();
     let turn = |v: &Vec3| Vec3::new(v.x, cosine * v.y - sine * v.z, sine * v.y + cosine * v.z);
     let mut turned = law.intact(false);
-    let mut scale = 0.0f64;
+    let (mut scale, mut kink, mut before) = (0.0f64, 0.0f64, Vec3::zeros());
+    let stiffest = interface.stiffness[0].max(interface.stiffness[1]);
     for jump in any_way(draw, [size * opening, size * slip], 2000) {
         let force = interface.load(jump, &mut state);
         scale = scale.max(force.stored);
@@ -209,7 +210,10 @@ pub(crate) fn spring_any_way(draw: &mut Draw) -> Held {
         let apart = (turn(&force.traction()) - other).norm();
         hold(apart <= 1e-9 * (1.0 + law.cohesion), || format!("turned axes change {apart} Pa"))?;
         account.step(jump, force);
-        hold(account.least >= -1e-5 * scale, || format!("gives {} of {scale} J/m² back", -account.least))?;
+        // The mean of two forces is off by that much where a side closes, opens or begins to slide between them.
+        kink = kink.max(0.25 * stiffest * (jump - before).norm_squared());
+        before = jump;
+        hold(account.least >= -1e-5 * scale - kink, || format!("gives {} of {scale} J/m² back", -account.least))?;
     }
     Ok(())
 }
