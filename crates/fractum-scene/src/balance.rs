@@ -18,6 +18,8 @@ const VISIBLE_CHANGE: f64 = 5e-3;
 
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
 pub(crate) const IN_SITU_ROUND_OFF: f64 = 1e-9;
+/// Part of the energy that gas holds likewise: as it begins to enter it has done no work yet.
+const GAS_ROUND_OFF: f64 = 1e-12;
 
 /// The ledger of a state of equilibrium.
 pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
@@ -81,8 +83,8 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
         ledger[EnergyKind::Gas] = held;
         ledger[EnergyKind::GasSupplied] = supplied;
         ledger[EnergyKind::GasLeaked] = leaked;
-        // What the gas has done is in play; what it holds may be much more.
-        ledger.scale = ledger.scale.max((supplied - held - leaked).abs());
+        // What the gas has done is in play; what it holds may be much more, and its rounding is no energy.
+        ledger.scale = ledger.scale.max((supplied - held - leaked).abs()).max(GAS_ROUND_OFF * held);
     }
     // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
     // work done so far.

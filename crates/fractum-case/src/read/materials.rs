@@ -113,7 +113,8 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     let strength_ratio = compressive_strength.zip(tensile_strength).map(|(compressive, tensile)| compressive / tensile);
-    let rate = table.table("rate").map(|rate| super::rate::read(rate, criterion, strength_ratio));
+    let rate =
+        table.table("rate").map(|rate| super::rate::read(rate, criterion, strength_ratio, table.is_overridden()));
     table.finish("here");
     let tensile_strength = tensile_strength?;
     let strength_ratio = compressive_strength? / tensile_strength;

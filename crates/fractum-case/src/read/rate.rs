@@ -27,13 +27,24 @@ enum Strength {
 /// Reads the table; the compressive strength has a curve where the criterion has that strength.
 ///
 /// - `strength_ratio`: compressive over tensile strength at rest
-pub(super) fn read(table: Table<'_>, kind: CriterionKind, strength_ratio: Option<f64>) -> Option<Spanned<RateCurves>> {
+/// - `switched`: whether `--set` has a part in the table that it belongs to
+pub(super) fn read(
+    table: Table<'_>,
+    kind: CriterionKind,
+    strength_ratio: Option<f64>,
+    switched: bool,
+) -> Option<Spanned<RateCurves>> {
     let place = table.place.clone();
     let strength = curve(&table, "strength", Some(Strength::Tensile)).required();
     let compressive = if kind.uses_compressive_strength() {
         curve(&table, "compressive_strength", Some(Strength::Compressive)).required().map(Some)
     } else {
-        table.refuse("compressive_strength", "with this criterion, which has no strength in compression");
+        let why = "with this criterion, which has no strength in compression";
+        if switched && !table.is_overridden() {
+            table.set_aside("compressive_strength", why);
+        } else {
+            table.refuse("compressive_strength", why);
+        }
         Some(None)
     };
     let energy = curve(&table, "fracture_energy", None).or_if_absent(Vec::new());

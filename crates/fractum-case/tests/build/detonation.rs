@@ -179,7 +179,8 @@ fn a_charge_burns_behind_its_front_and_stemming_lets_its_gas_out() {
         // 1 m at 5 km/s: 200 us after the delay; a quarter of it has burnt at a quarter of the time, less half of the rise.
         let burning = "detonation = { length = \"1 m\", velocity = \"5 km/s\", delay = \"50 us\" }";
         let ([mass, _], supplied) = run(explosive, burning, "100 us");
-        assert!((mass / 2.0 - (0.25 - 0.025)).abs() < 0.01, "{explosive}: {mass}");
+        // The last step of the solids, 0.013 of the time of burning, is not in it yet.
+        assert!((mass / 2.0 - (0.25 - 0.025)).abs() < 0.015, "{explosive}: {mass}");
         assert!((supplied / given - mass / 2.0).abs() < 1e-9, "{explosive}: {supplied}");
         let ([mass, _], supplied) = run(explosive, burning, "300 us");
         assert!((mass / 2.0 - 1.0).abs() < 5e-3 && (supplied / given - 1.0).abs() < 5e-3, "{explosive}: {mass}");

@@ -61,7 +61,7 @@ pub(crate) fn onset(draw: &mut Draw) -> Held {
     let [first, last] = [curve[0], curve[curve.len() - 1]].map(|point| point[1]);
     hold((first * (1.0 - 1e-12)..=last * (1.0 + 1e-12)).contains(&factor), || format!("{factor} is off the curve"))?;
     let faster = loaded(rate * draw.over_decades(1.0, 1e3), 40.0);
-    hold(faster.strength >= edge.strength.min(at_rest * possible) * (1.0 - 1e-9) || faster.is_limited, || {
+    hold(faster.strength >= edge.strength.min(at_rest * possible) * (1.0 - 1e-6) || faster.is_limited, || {
         format!("{faster:?} is weaker than {edge:?}")
     })
 }
