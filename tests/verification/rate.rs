@@ -164,7 +164,7 @@ fn torn(bar: &Bar, rate: f64) -> Torn {
     Torn {
         strength: peak / (area * STRENGTH),
         energy: (ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]) / (area * FRACTURE_ENERGY),
-        rate: scene.solid.rate_report(0).unwrap().rates[1],
+        rate: fractum_fem::rate_report(&scene.solid, 0).unwrap().rates[1],
         reaction: reaction / (area * STRENGTH),
     }
 }

@@ -61,13 +61,6 @@ impl Solid {
         }
     }
 
-    /// The rates at which the edges of a body began to break; none where they play no part.
-    pub fn rate_report(&self, body: usize) -> Option<RateReport> {
-        let fields = self.edge_fields().filter(|(of, _)| *of == body).map(|(_, field)| field.rate.as_deref());
-        let fields: Option<Vec<&RateField>> = fields.collect();
-        fields.filter(|fields| !fields.is_empty()).map(|fields| RateReport::of(fields.iter().flat_map(|f| &f.edges)))
-    }
-
     /// Edge histories of a body in the order of its edges, those that are known here; empty without damage.
     pub fn edge_damage(&self, body: usize) -> Vec<EdgeDamage> {
         let model = &self.bodies[body];
@@ -149,6 +142,13 @@ impl Solid {
 
 fn kept_damage(solid: &Solid, body: usize) -> Vec<EdgeDamage> {
     if solid.bodies[body].location.keeps_all() { solid.edge_damage(body) } else { Vec::new() }
+}
+
+/// The rates at which the edges of a body began to break; none where they play no part.
+pub fn rate_report(solid: &Solid, body: usize) -> Option<RateReport> {
+    let fields = solid.edge_fields().filter(|(of, _)| *of == body).map(|(_, field)| field.rate.as_deref());
+    let fields: Option<Vec<&RateField>> = fields.collect();
+    fields.filter(|fields| !fields.is_empty()).map(|fields| RateReport::of(fields.iter().flat_map(|f| &f.edges)))
 }
 
 /// What is saved of the rates of the edges of a body, in their order; nothing where they play no part.

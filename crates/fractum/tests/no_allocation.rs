@@ -261,7 +261,10 @@ fn a_warm_step_allocates_nothing() {
             body.damage.as_mut().unwrap().rate = Some(Arc::new(curves));
             let mut scene = pulled(nodes.clone(), body, 0.5, calm);
             assert_eq!(requests(&mut scene), 0, "strength by rate");
-            assert!(scene.solid.rate_report(0).is_some_and(|report| report.count > 0 && report.rates[2] > 1.0));
+            assert!(
+                fractum_fem::rate_report(&scene.solid, 0)
+                    .is_some_and(|report| report.count > 0 && report.rates[2] > 1.0)
+            );
         }
 
         let mut scene = graded(nodes.clone(), armed(smoothed.clone()));

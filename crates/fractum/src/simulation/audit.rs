@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use fractum_case::model::ProbeKind;
-use fractum_fem::{RateReport, cracks, motion, neighbours};
+use fractum_fem::{RateReport, cracks, motion, neighbours, rate_report};
 use fractum_math::Vec3;
 use fractum_output::number::{at_instant, percent, quantity};
 use fractum_output::summary::LargestOverlap;
@@ -150,7 +150,7 @@ impl Simulation {
     fn tell_rates(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
         let reports =
-            (0..solid.body_count()).filter_map(|body| Some((&solid.body(body).name, solid.rate_report(body)?)));
+            (0..solid.body_count()).filter_map(|body| Some((&solid.body(body).name, rate_report(solid, body)?)));
         let reports: Vec<(String, RateReport)> =
             reports.filter(|(_, report)| report.count > 0).map(|(name, report)| (name.clone(), report)).collect();
         for (name, RateReport { count, limited, rates }) in reports {
