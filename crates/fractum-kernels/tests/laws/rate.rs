@@ -29,7 +29,8 @@ pub(crate) fn onset(draw: &mut Draw) -> Held {
     let law = RateLaw { strength: &strength, compression, energy: &energy, watched };
     let (modulus, at_rest) = (draw.over_decades(1e6, 1e12), draw.over_decades(1e3, 1e9));
     let length_ratio = [draw.over_decades(1e-6, 0.9), 0.9];
-    let wave = draw.between(0.0, 0.9);
+    // Below the least factor of any curve.
+    let wave = draw.between(0.0, 0.75);
     let loaded = |rate: f64, steps: f64| {
         let mut edge = EdgeRate::intact(at_rest);
         let dt = at_rest / modulus / rate / steps;
