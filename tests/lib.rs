@@ -4,6 +4,7 @@ use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, LocalDamping, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
+use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings};
 use fractum_scene::{SceneSettings, TimeStepSettings};
 
 /// Concrete of the tests: E = 30 GPa, ν = 0.2, ρ = 2400 kg/m³.
@@ -26,6 +27,21 @@ pub fn settings(end: f64, balance_stop: f64) -> SceneSettings {
         stiffness_time: 0.0,
         balance_stop,
         joined_below: 0.95,
+    }
+}
+
+/// Equilibria by steps of the load parameter to `end`, by factorisation, which stop where there is none.
+pub fn statics(step: f64, end: f64) -> StaticSettings {
+    StaticSettings {
+        control: Control::Time,
+        step,
+        end,
+        most_steps: 2000,
+        tolerance: 1e-10,
+        linear_tolerance: 1e-13,
+        linear: LinearSolver::Direct,
+        no_equilibrium: NoEquilibrium::Stop,
+        damping: None,
     }
 }
 

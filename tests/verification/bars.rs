@@ -10,9 +10,9 @@ use fractum_fem::{
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
+use fractum_scene::statics::{Control, StaticSettings, StaticSolver};
 use fractum_scene::{ContactParameters, EnergyKind, Loads, Motion, Scene, Support, Supports};
-use fractum_tests::{CONCRETE, settings};
+use fractum_tests::{CONCRETE, settings, statics};
 
 /// Cells of a bar under a phase field, along and across.
 const LONG: [u32; 2] = [34, 2];
@@ -123,17 +123,8 @@ fn torn(bar: &Bar) -> [f64; 3] {
     let (loads, count) = (Loads::new(Vec::new(), solid.reference.len()), solid.body_count());
     let debris = Debris::new(&solid, vec![ContactParameters::default(); count]);
     let mut scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(1.0, f64::INFINITY));
-    let statics = StaticSettings {
-        control: Control::Path,
-        step: 0.02,
-        end: 1.0,
-        most_steps: 2000,
-        tolerance: 1e-5,
-        linear_tolerance: 1e-12,
-        linear: LinearSolver::Direct,
-        no_equilibrium: NoEquilibrium::Stop,
-        damping: None,
-    };
+    let statics =
+        StaticSettings { control: Control::Path, tolerance: 1e-5, linear_tolerance: 1e-12, ..statics(0.02, 1.0) };
     let mut solver = StaticSolver::new(&scene, statics).unwrap();
     let places = scene.supports().places(&right);
     let (mut peak, mut now) = (0.0f64, 0.0);

@@ -10,14 +10,12 @@ use fractum_fem::{
 use fractum_math::{Mat3, Sym3, Vec3, rotation_by};
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{
-    Control, LinearSolver, ModesSettings, NoEquilibrium, StaticSettings, StaticSolver, find_modes,
-};
+use fractum_scene::statics::{LinearSolver, ModesSettings, StaticSettings, StaticSolver, find_modes};
 use fractum_scene::{
     ContactParameters, Load, Loads, Motion, NodalForce, Scene, SceneSettings, Support, SupportedFacet, Supports,
     SurfaceSupports,
 };
-use fractum_tests::{jittered_box, noise, settings, surface};
+use fractum_tests::{jittered_box, noise, settings, statics, surface};
 
 const FORMULATIONS: [Formulation; 2] = [Formulation::Standard, Formulation::Smoothed];
 
@@ -108,17 +106,7 @@ fn pulled(nodes: Vec<Vec3>, body: Body) -> (f64, Vec<Vec3>) {
     }
     let load = Load::Nodal(NodalForce { points, axis: 0, value: Arc::new(|t, _| t) });
     let mut scene = scene_of(solid, supports, vec![load], settings(1.0, 1e-2));
-    let statics = StaticSettings {
-        control: Control::Time,
-        step: 1.0,
-        end: 1.0,
-        most_steps: 10,
-        tolerance: 1e-9,
-        linear_tolerance: 1e-13,
-        linear: LinearSolver::Direct,
-        no_equilibrium: NoEquilibrium::Stop,
-        damping: None,
-    };
+    let statics = StaticSettings { tolerance: 1e-9, ..statics(1.0, 1.0) };
     let mut solver = StaticSolver::new(&scene, statics).unwrap();
     while !solver.is_finished(&scene) {
         solver.step(&mut scene).unwrap();

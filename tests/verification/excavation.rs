@@ -6,12 +6,12 @@ use std::sync::Arc;
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Formulation, Kinematics, LocalDamping, Plane, Solid, fields};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
+use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
     ContactParameters, EnergyKind, Excavation, Gravity, Load, Loads, Motion, NodalForce, Scene, Support, Supports,
     released_forces, with_excavation,
 };
-use fractum_tests::{CONCRETE, settings, softening};
+use fractum_tests::{CONCRETE, settings, softening, statics};
 
 const SECTORS: usize = 18;
 const IN_CORE: usize = 5;
@@ -193,20 +193,6 @@ impl Quarter {
 
 fn at_once(bodies: Vec<usize>, over: Option<f64>, is_smooth: bool) -> Excavation {
     Excavation { bodies, over, share: 1.0, is_smooth }
-}
-
-fn statics(step: f64, end: f64) -> StaticSettings {
-    StaticSettings {
-        control: Control::Time,
-        step,
-        end,
-        most_steps: 2000,
-        tolerance: 1e-10,
-        linear_tolerance: 1e-13,
-        linear: LinearSolver::Direct,
-        no_equilibrium: NoEquilibrium::Stop,
-        damping: None,
-    }
 }
 
 /// The rock at rest under its stress, with the core.

@@ -7,12 +7,12 @@ use fractum_math::{Mat3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_mesh::{CutAlong, Group, Mesh};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
+use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
     ContactParameters, EnergyKind, InterfaceFace, InterfaceKind, InterfaceLaw, InterfaceSoftening, Interfaces, Loads,
     MixedMode, Motion, Scene, Support, Supports,
 };
-use fractum_tests::{CONCRETE, settings};
+use fractum_tests::{CONCRETE, settings, statics};
 use nalgebra::Rotation3;
 
 const LAW: InterfaceLaw = InterfaceLaw {
@@ -213,18 +213,7 @@ fn a_patch_with_an_interface_is_exact_in_any_direction() {
                 }
                 supports
             });
-            let statics = StaticSettings {
-                control: Control::Time,
-                step: 1.0,
-                end: 1.0,
-                most_steps: 10,
-                tolerance: 1e-10,
-                linear_tolerance: 1e-13,
-                linear: LinearSolver::Direct,
-                no_equilibrium: NoEquilibrium::Stop,
-                damping: None,
-            };
-            let mut solver = StaticSolver::new(&scene, statics).unwrap();
+            let mut solver = StaticSolver::new(&scene, statics(1.0, 1.0)).unwrap();
             while !solver.is_finished(&scene) {
                 solver.step(&mut scene).unwrap();
             }

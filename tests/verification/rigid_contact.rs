@@ -6,12 +6,12 @@ use fractum_fem::{Body, Elastic, ElementKind, Formulation, Kinematics, LocalDamp
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings, StaticSolver};
+use fractum_scene::statics::{StaticSettings, StaticSolver};
 use fractum_scene::{
     Bonded, ContactParameters, Contacts, Drive, ElasticMaterial, EnergyKind, Form, Frame, Gravity, Load, Loads, Motion,
     NodesOnShape, RigidBody, Scene, SceneSettings, Shape, Support, Supports, TimeStepSettings,
 };
-use fractum_tests::{jittered_box, surface};
+use fractum_tests::{jittered_box, statics, surface};
 
 use crate::ranks::{advance, bits, on_two_threads, same_on_ranks};
 
@@ -129,17 +129,7 @@ fn rest(scene: &mut Scene) {
 
 /// The same in steps of the load parameter, with a look at each state.
 fn rest_by(scene: &mut Scene, step: f64, mut look: impl FnMut(&Scene)) {
-    let settings = StaticSettings {
-        control: Control::Time,
-        step,
-        end: 1.0,
-        most_steps: 200,
-        tolerance: 1e-6,
-        linear_tolerance: 1e-12,
-        linear: LinearSolver::Direct,
-        no_equilibrium: NoEquilibrium::Stop,
-        damping: None,
-    };
+    let settings = StaticSettings { most_steps: 200, tolerance: 1e-6, linear_tolerance: 1e-12, ..statics(step, 1.0) };
     let mut solver = StaticSolver::new(scene, settings).unwrap();
     while !solver.is_finished(scene) {
         solver.step(scene).unwrap();

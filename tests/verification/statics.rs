@@ -3,34 +3,23 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, LocalDamping, Plane, Region, Solid, fields,
+    Body, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, Kinematics, LocalDamping, Plane, Region, Solid,
+    fields,
 };
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{
-    Control, LinearSolver, NoEquilibrium, Opening, StaticSettings, StaticSolver, Stiffness, check_supports,
-};
+use fractum_scene::statics::{Control, LinearSolver, Opening, StaticSettings, StaticSolver, Stiffness, check_supports};
 use fractum_scene::{
-    ContactParameters, Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support, Supports,
-    TimeFunction, TimeStepSettings,
+    ContactParameters, EnergyKind, Load, Loads, Motion, NodalForce, Scene, SceneError, SceneSettings, Support,
+    Supports, TimeFunction, TimeStepSettings,
 };
-use fractum_tests::{CONCRETE, jittered_box, softening};
+use fractum_tests::{CONCRETE, jittered_box, softening, statics};
 
 const FORMULATIONS: [Formulation; 2] = [Formulation::Standard, Formulation::Smoothed];
 
 fn settings(control: Control, linear: LinearSolver) -> StaticSettings {
-    StaticSettings {
-        control,
-        step: 0.1,
-        end: 1.0,
-        most_steps: 2000,
-        tolerance: 1e-6,
-        linear_tolerance: 1e-13,
-        linear,
-        no_equilibrium: NoEquilibrium::Stop,
-        damping: None,
-    }
+    StaticSettings { control, tolerance: 1e-6, linear, ..statics(0.1, 1.0) }
 }
 
 fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>) -> Scene {
@@ -230,4 +219,69 @@ fn opening_control_follows_the_snap_back_of_a_bar_as_well() {
     assert!((peak / strength - 1.0).abs() < 0.05, "{peak} of {strength} N");
     assert!(scene.supports().reaction(&places, &Vec3::x()) < 0.5 * peak);
     assert!(scene.ledger().residual_max_relative < 1e-3);
+}
+
+/// Supports that move a whole body without strain find it at rest, at any size.
+#[test]
+fn a_body_that_is_moved_as_a_whole_is_at_rest() {
+    for (formulation, scale) in
+        [(Formulation::Smoothed, 1.0), (Formulation::Standard, 1e-3), (Formulation::Smoothed, 1e3)]
+    {
+        let (nodes, body) = jittered_box([4, 3, 3], Vec3::new(1.0, 0.6, 0.6) * scale);
+        let solid = Solid::new(nodes, vec![Body { formulation, ..body }]).unwrap();
+        let left = nodes_where(&solid, |p| p.x < 1e-9);
+        let slope = Mat3::new(0.0, -0.02, 0.01, 0.02, 0.0, 0.03, -0.01, -0.03, 0.0);
+        let support = |axis: usize| {
+            let of = move |x: &Vec3| (slope * x + Vec3::new(0.1, 0.2, -0.3) * scale)[axis];
+            let motion: TimeFunction = Arc::new(move |t, x: &Vec3| t * of(x));
+            Support::new(&format!("left {axis}"), left.clone(), axis, Motion::Displacement(motion))
+        };
+        for linear in [LinearSolver::Direct, LinearSolver::Iterative, LinearSolver::Faer] {
+            let mut scene = scene(solid.clone(), (0..3).map(support).collect(), Vec::new());
+            let mut solver = StaticSolver::new(&scene, settings(Control::Time, linear)).unwrap();
+            while !solver.is_finished(&scene) {
+                solver.step(&mut scene).unwrap();
+            }
+            for (u, x) in scene.solid.displacement.iter().zip(&scene.solid.reference) {
+                let expected = slope * x + Vec3::new(0.1, 0.2, -0.3) * scale;
+                assert!((u - expected).norm() < 1e-8 * scale, "{linear:?}, {scale}: {u} {expected}");
+            }
+        }
+    }
+}
+
+/// A bar that is stretched and turned has the strain of its stretch alone, at rest and on the way to the next equilibrium; in a later stage of motion it
+/// turns.
+#[test]
+fn motion_between_equilibria_keeps_the_strains_of_equilibrium() {
+    for formulation in FORMULATIONS {
+        let (nodes, body) = jittered_box([4, 2, 2], Vec3::new(0.4, 0.1, 0.1));
+        let body = Body { formulation, kinematics: Kinematics::Auto, ..body };
+        let solid = Solid::new(nodes, vec![body]).unwrap();
+        let ends = nodes_where(&solid, |p| p.x < 1e-9 || p.x > 0.4 - 1e-9);
+        let turn = |axis: usize| {
+            let of = |x: &Vec3| 0.02 * Vec3::z().cross(x) + Vec3::x() * (1e-5 * x.x);
+            let motion: TimeFunction = Arc::new(move |t, x: &Vec3| t.min(1.0) * of(x)[axis]);
+            Support::new(&format!("ends {axis}"), ends.clone(), axis, Motion::Displacement(motion))
+        };
+        let of = |solid: Solid| scene(solid, (0..3).map(turn).collect(), Vec::new());
+        let mut moved = of(solid.clone());
+        let mut solver = StaticSolver::new(&moved, settings(Control::Time, LinearSolver::Direct)).unwrap();
+        while !solver.is_finished(&moved) {
+            solver.step(&mut moved).unwrap();
+        }
+        let at_rest = moved.ledger()[EnergyKind::Elastic];
+        moved.begin_motion(None, 1.0);
+        for _ in 0..300 {
+            moved.step(true).unwrap();
+        }
+        // Corotational cells would see a strain of theta^2/2, twenty times that of the stretch.
+        assert_eq!(moved.solid.body(0).kinematics, Kinematics::Auto);
+        let elastic = moved.ledger()[EnergyKind::Elastic];
+        assert!(at_rest > 0.0 && (elastic / at_rest - 1.0).abs() < 1e-6, "{elastic} {at_rest}");
+        moved.begin_stage(of(solid), true);
+        let turns =
+            (0..300).any(|_| moved.step(false).is_err() || moved.solid.body(0).kinematics == Kinematics::Corotational);
+        assert!(turns && moved.solid.body(0).kinematics == Kinematics::Corotational);
+    }
 }

@@ -48,6 +48,7 @@ pub use cracks::{
     Fracture, SeparatedElement, SeparatedFacet, Separation,
 };
 pub use damage::rate::RateReport;
+pub use damage::threshold::IN_RESERVE;
 pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,

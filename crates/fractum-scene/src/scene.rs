@@ -55,6 +55,8 @@ pub(crate) struct Optional {
     pub(crate) interfaces: Interfaces,
     /// What leaves when this scene is a stage that begins.
     pub(crate) excavation: Option<Box<Excavation>>,
+    /// Whether the scene moves from one equilibrium to the next. These know small strains alone, and bodies keep them on the way.
+    pub(crate) is_between_equilibria: bool,
     /// Natural vibrations, once they have been looked for.
     pub(crate) modes: Option<Box<Modes>>,
     /// What was noticed beyond the models of the scene.

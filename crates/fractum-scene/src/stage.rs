@@ -14,6 +14,7 @@ impl Scene {
     /// - `moving`: whether the scene moves
     pub fn begin_stage(&mut self, next: Scene, moving: bool) {
         (self.supports, self.settings) = (next.supports, next.settings);
+        self.optional.is_between_equilibria = false;
         let before = std::mem::replace(&mut self.loads, next.loads);
         self.loads.follow(before, &self.solid);
         let since = if moving { self.clock.dt_before } else { 0.0 };

@@ -303,6 +303,9 @@ fn add_contact_forces(scene: &mut Scene, dt: f64, mut work: Work) -> Work {
 /// Bodies that begin to turn become corotational, and cut elements leave.
 fn change_solids(scene: &mut Scene, dt: f64) -> StepReport {
     let mut turning = Vec::new();
+    if scene.optional.is_between_equilibria {
+        return release_cut_elements(scene, dt);
+    }
     // What small strains had found beyond was never put in.
     if scene.clock.begins_motion() {
         scene.books.time_step += motion::let_spin(&mut scene.solid, scene.settings.time_step.end, dt, &mut turning);

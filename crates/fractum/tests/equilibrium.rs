@@ -163,6 +163,15 @@ fn a_bar_that_snaps_back_moves_to_the_state_that_the_path_reaches_and_its_ledger
     let load = low[1] + (high[1] - low[1]) * (after[0] - low[0]) / (high[0] - low[0]);
     let peak = path.iter().map(|row| row[1]).fold(0.0, f64::max);
     assert!(after[1] < 0.6 * peak && (after[1] - load).abs() < 0.02 * peak, "{} {load} {peak}", after[1]);
+    // Steps of motion between them are no states of equilibrium.
+    let steps = summary["time"]["steps"].as_u64().unwrap();
+    for (most, ends) in [(400, true), (3, false)] {
+        let limited = format!("control = \"time\"\nno_equilibrium = \"motion\"\nmax_steps = {most}");
+        let ended = Workplace::new(&brittle_bar(&limited)).fractum(&["run", "case.toml", "-o", "out"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert!(steps > 400 && ended.stdout.contains("solver.max_steps allows no more") != ends, "{}", ended.stdout);
+        assert_eq!(ended.stdout.contains("is the end of the run"), ends, "{}", ended.stdout);
+    }
     // Without motion the run says where it ends.
     let stopped = Workplace::new(&brittle_bar("control = \"time\""));
     let ended = stopped.fractum(&["run", "case.toml", "-o", "out"]);

@@ -11,14 +11,13 @@ use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scen
 use super::Context;
 use super::bodies::{Numbering, Part};
 use crate::model::{Case, Interface, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
+use crate::read::interfaces::LEAST_DUCTILITY;
 use crate::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Elements in a process zone below which it is not resolved.
 const IN_ZONE: f64 = 3.0;
 /// How much stiffer than an element an interface is at rest that is to be stiff: it gives way by a hundredth of one.
 const FIRM: f64 = 100.0;
-/// Share of the fracture energy that an interface may store up to its strength.
-const MOST_STORED: f64 = 0.95;
 
 /// Cuts a mesh along the interfaces of a case.
 ///
@@ -110,7 +109,7 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
     let kinds: Vec<InterfaceKind> = kinds.collect();
     for (kind, interface) in kinds.iter().zip(&case.interfaces).filter(|(_, given)| given.stiffness.is_none()) {
         let Some(stiffness) = kind.stiffness else { continue };
-        if (SpringInterface { law: kind.law, stiffness }).least_ductility() * MOST_STORED < 1.0 {
+        if (SpringInterface { law: kind.law, stiffness }).least_ductility() < LEAST_DUCTILITY {
             let found = ": its faces are so large that softening has no equilibrium";
             context.error(&interface.place, found, "smaller elements along it, or a normal_stiffness");
         }

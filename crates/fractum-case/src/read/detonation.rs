@@ -1,6 +1,10 @@
 //! `loads[].detonation`: a front that runs along a hole. `loads[].scatter`: delays by chance.
 
-use fractum_math::elementary::{cos, ln};
+use std::f64::consts::PI;
+
+use fractum_math::elementary::{cos, hypot, ln};
+use rand_distr::{Distribution as _, OpenClosed01};
+use rand_pcg::Pcg64Mcg;
 
 use crate::Diagnostic;
 use crate::model::{Detonation, InCracks};
@@ -60,27 +64,13 @@ impl DelayScatter {
     /// The delay of a row: normally distributed about the one given, never before 0 [s].
     pub(super) fn of(&self, row: usize, delay: f64) -> f64 {
         let [all, relative] = self.deviation;
-        let deviation = fractum_math::elementary::hypot(all, relative * delay);
-        (delay + deviation * normal(self.seed, row as u64)).max(0.0)
+        let deviation = hypot(all, relative * delay);
+        // Every row has its own stream.
+        let mut generator = Pcg64Mcg::new(u128::from(self.seed) << 64 | row as u128);
+        let [radius, turn]: [f64; 2] = [(); 2].map(|()| OpenClosed01.sample(&mut generator));
+        // Box and Muller, *Ann. Math. Stat.* 29 (1958) 610.
+        (delay + deviation * (-2.0 * ln(radius)).sqrt() * cos(2.0 * PI * turn)).max(0.0)
     }
-}
-
-/// A number of the standard normal distribution by seed and counter (Box and Muller, *Ann. Math. Stat.* 29 (1958) 610).
-fn normal(seed: u64, counter: u64) -> f64 {
-    // Above 0, at most 1.
-    let radius = 1.0 - uniform(seed, 2 * counter);
-    (-2.0 * ln(radius)).sqrt() * cos(2.0 * std::f64::consts::PI * uniform(seed, 2 * counter + 1))
-}
-
-/// A number in 0..1 (SplitMix64: Steele, Lea and Flood, OOPSLA 2014).
-fn uniform(seed: u64, counter: u64) -> f64 {
-    let mix = |word: u64| {
-        let mut z = word.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    };
-    (mix(mix(seed) ^ counter) >> 11) as f64 / (1u64 << 53) as f64
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::usual::{FRACTURE_ENERGY, STRENGTH};
 use crate::{Diagnostic, Spanned};
 
 /// Energy over that stored up to the strength below which softening would snap back.
-const LEAST_DUCTILITY: f64 = 1.05;
+pub(crate) const LEAST_DUCTILITY: f64 = 1.05;
 
 /// Reads all interfaces; nothing where one of them is wrong.
 pub(super) fn read(root: &Table<'_>) -> Option<Vec<Interface>> {

@@ -14,7 +14,7 @@ mod gauges;
 mod heat;
 mod in_situ;
 mod interface;
-mod interfaces;
+pub(crate) mod interfaces;
 mod loose;
 mod materials;
 mod names;

@@ -19,7 +19,7 @@ const SIZES_OF_LENGTH: f64 = 2.0;
 const ONE_SIZE: f64 = 1.5;
 
 /// Characteristic length that an edge of lowered or raised strength has at most, over the one at which softening snaps back.
-pub(crate) const IN_RESERVE: f64 = 0.9;
+pub const IN_RESERVE: f64 = 0.9;
 
 /// Strength and characteristic length of the edges of a body.
 pub(crate) struct Threshold {

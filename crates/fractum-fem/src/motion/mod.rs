@@ -24,5 +24,5 @@ pub use subcycled_solid::{
     short_steps, with_copies,
 };
 pub use time_step::{StableStep, fine_stable_step, motion_frequency, stable_step_bound};
-pub use turning::{keep_small_strains, let_spin, let_turn};
+pub use turning::{let_spin, let_turn};
 pub use viscous_solid::{bulk_damping_ratio, set_viscosity};

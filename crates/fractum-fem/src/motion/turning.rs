@@ -63,13 +63,6 @@ pub fn let_turn(solid: &mut Solid, step: u64, dt: f64, turning: &mut Vec<u32>) -
     become_corotational(solid, found, dt, turning)
 }
 
-/// Has bodies of [`Kinematics::Auto`] keep small strains, however they turn.
-pub fn keep_small_strains(solid: &mut Solid) {
-    for model in solid.bodies.iter_mut().filter(|model| model.body.kinematics == Kinematics::Auto) {
-        model.body.kinematics = Kinematics::Small;
-    }
-}
-
 /// Has those bodies of [`Kinematics::Auto`] that spin when motion begins be corotational at once: their small strains would relax a false strain
 /// until they turn, and give it back as energy. All ranks must call it after the first step.
 ///

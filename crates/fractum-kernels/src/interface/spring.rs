@@ -95,14 +95,13 @@ impl SpringInterface {
     /// along the slip, away from zero and thus towards further softening; the symmetric part of it, and of a closed face the diagonal alone.
     ///
     /// - `state`: the history that [`SpringInterface::load`] takes at `jump`
-    /// - `secant`: [`SpringInterface::secant`] after it
+    /// - `here`, `secant`: the traction there, and [`SpringInterface::secant`]
     #[inline]
-    pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, secant: [f64; 2]) -> Mat3 {
+    pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, here: &Vec3, secant: [f64; 2]) -> Mat3 {
         let size = tangential(jump);
         let along = if size > 0.0 { Vec3::new(0.0, jump.y, jump.z) / size } else { Vec3::y() };
         let across = Vec3::x().cross(&along);
         let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
-        let here = at(*jump);
         let onset = self.law.tensile_strength / self.stiffness[0] + self.law.cohesion / self.stiffness[1];
         let step = DIFFERENCE * (jump.norm() + onset).max(f64::MIN_POSITIVE.sqrt());
         let normal = Vec3::x() * if jump.x < 0.0 { -1.0 } else { 1.0 };

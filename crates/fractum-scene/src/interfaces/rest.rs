@@ -32,15 +32,17 @@ impl Interfaces {
             let jump = point.local(b - a);
             let mut state = point.state;
             let force = interface.load(jump, &mut state);
+            let traction = force.traction();
             let secant @ [along, across] = interface.secant(&jump, &force, &state);
             let mut stiffness = Mat3::from_diagonal(&Vec3::new(along, across, across));
             if share < 1.0 {
-                stiffness = stiffness * share + interface.tangent(&jump, &point.state, secant) * (1.0 - share);
+                stiffness =
+                    stiffness * share + interface.tangent(&jump, &point.state, &traction, secant) * (1.0 - share);
             }
             Some(InterfaceSpring {
                 pair: point.pair,
                 normal: point.frame.row(0).transpose(),
-                force: -point.frame.tr_mul(&force.traction()) * point.area,
+                force: -point.frame.tr_mul(&traction) * point.area,
                 stiffness: point.frame.transpose() * stiffness * point.frame * point.area,
             })
         })

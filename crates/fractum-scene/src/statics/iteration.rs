@@ -21,6 +21,8 @@ const SLIPPING_FREELY: [usize; 2] = [ITERATIONS[0], 60];
 /// Looks along a way for the place at which the forces do no work any more, and the part of their work that may be left.
 const LOOKS: usize = 6;
 const LEFT: f64 = 0.5;
+/// Unbalanced forces over those that drive a linear solution, below which they are rounding.
+const ROUNDING: f64 = 1e-11;
 /// Equilibria of a step at which what sticks is brought back: some four suffice, ten in stiff elements.
 const MOST_BROUGHT_BACK: usize = 16;
 
@@ -58,6 +60,7 @@ impl StaticSolver {
         let most = if monotone { MONOTONE_ITERATIONS } else { ITERATIONS[0] };
         // What sticks has moved a little at each equilibrium but the last.
         let (mut iteration, mut brought_back, mut slowest) = (0, 0, 0);
+        let mut unbalanced = Vec::new();
         while iteration < most {
             iteration += 1;
             if (self.stop)() {
@@ -84,12 +87,19 @@ impl StaticSolver {
             }
             let from = std::mem::take(&mut self.touching.place);
             let mut found = self.look(scene, &exact, [present, tau], longest);
-            if points.is_empty() && since == 0.0 && !scene.interfaces().is_empty() {
-                found = self.go_to_least_energy(scene, &exact, [present, tau], longest, &from, found);
+            if points.is_empty() && !scene.interfaces().is_empty() {
+                if since == 0.0 {
+                    let start = (&from[..], &unbalanced[..]);
+                    found = self.go_to_least_energy(scene, &exact, [present, tau], longest, start, found);
+                }
+                unbalanced.clone_from(&self.response.right);
             }
             let [missing, forces] = found;
             found_at = present + tau;
-            if missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
+            // A body that is moved without strain bears no forces that its rounding could be held against.
+            let linear = points.is_empty() && !has_contacts(scene);
+            let is_rounding = linear && missing <= ROUNDING * self.response.driving;
+            if is_rounding || missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
                 slowest = slowest.max(iteration);
                 if bring_back(scene, &self.response.start, [present, present + tau], &mut self.touching.stretch) {
                     if brought_back == MOST_BROUGHT_BACK {
@@ -102,7 +112,6 @@ impl StaticSolver {
                 return Ok(Some((present + tau, slowest)));
             }
             // Of an elastic step nothing but the linear solution is left to improve.
-            let linear = points.is_empty() && !has_contacts(scene);
             if linear && !self.system.sharpen().map_err(|error| come_apart(scene, error))? {
                 return Ok(None);
             }
@@ -250,48 +259,35 @@ impl StaticSolver {
     /// Goes that part of the way to the displacements of the response on which the forces do no work any more: faces that open and close by turns
     /// come to rest so (Crisfield 1991, 9.2).
     ///
-    /// - `from`: the displacements before; `found`: what is out of balance at the end of the way, and the forces there
+    /// - `from`: the displacements before, and the unbalanced forces there [N]
+    /// - `found`: what is out of balance at the end of the way, and the forces there
     fn go_to_least_energy(
         &mut self,
         scene: &mut Scene,
         exact: &Boundary,
         times: [f64; 2],
         longest: f64,
-        from: &[Vec3],
-        found: [f64; 2],
+        (from, unbalanced): (&[Vec3], &[Vec3]),
+        mut found: [f64; 2],
     ) -> [f64; 2] {
         let way: Vec<Vec3> = self.response.start.iter().zip(from).map(|(to, from)| to - from).collect();
-        let work = |solver: &Self| -> f64 { solver.response.right.iter().zip(&way).map(|(f, way)| f.dot(way)).sum() };
-        let at_end = work(self);
-        if at_end >= 0.0 {
-            return found;
-        }
-        self.go(from, &way, 0.0);
-        self.look(scene, exact, times, longest);
-        let at_start = work(self);
-        let (mut low, mut high, mut part) = ((0.0, at_start), (1.0, at_end), 1.0);
-        let mut found = found;
-        let mut here = at_end;
+        let work = |forces: &[Vec3]| -> f64 { forces.iter().zip(&way).map(|(force, way)| force.dot(way)).sum() };
+        let (at_start, at_end) = (work(unbalanced), work(&self.response.right));
+        let (mut low, mut high, mut here) = ((0.0, at_start), (1.0, at_end), at_end);
         for _ in 0..LOOKS {
-            if here.abs() <= LEFT * at_start || at_start <= 0.0 {
+            if here.abs() <= LEFT * at_start || at_start <= 0.0 || at_end >= 0.0 {
                 break;
             }
             let root = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            part = root.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0));
-            self.go(from, &way, part);
+            let part = root.clamp(low.0 + 0.1 * (high.0 - low.0), high.0 - 0.1 * (high.0 - low.0));
+            for ((place, from), way) in self.response.start.iter_mut().zip(from).zip(&way) {
+                *place = from + way * part;
+            }
             found = self.look(scene, exact, times, longest);
-            here = work(self);
+            here = work(&self.response.right);
             *(if here > 0.0 { &mut low } else { &mut high }) = (part, here);
         }
-        self.go(from, &way, part);
-        if part == 1.0 { self.look(scene, exact, times, longest) } else { found }
-    }
-
-    /// Sets the displacements of the response to those of a part of a way.
-    fn go(&mut self, from: &[Vec3], way: &[Vec3], part: f64) {
-        for ((place, from), way) in self.response.start.iter_mut().zip(from).zip(way) {
-            *place = from + way * part;
-        }
+        found
     }
 
     /// Gives the system places for all pairs of nodes that touch.
@@ -350,6 +346,7 @@ impl StaticSolver {
         for spring in &self.touching.springs {
             spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.response.right);
         }
+        self.response.driving = ahead.abs() * self.response.right.iter().map(Vec3::norm_squared).sum::<f64>().sqrt();
         self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| come_apart(scene, e))?;
         check_loose(scene, &self.response.slope, ahead)?;
         for (u, p) in self.response.slope.iter_mut().zip(&field) {

@@ -110,6 +110,8 @@ struct Response {
     slope: Vec<Vec3>,
     /// Right-hand side, or unbalanced forces [N].
     right: Vec<Vec3>,
+    /// Forces by which the supports and loads of the step drive what is free, with all else in its place [N].
+    driving: f64,
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
 }

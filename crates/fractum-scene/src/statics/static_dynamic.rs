@@ -60,8 +60,7 @@ impl Scene {
         let critical = 4.0 * std::f64::consts::PI / period;
         let damping = damping.unwrap_or(LocalDamping { local: 0.0, mass_rate: DAMPING * critical });
         self.settings.damping = damping;
-        // Equilibrium knows small strains alone, and so does the way from one to the next.
-        motion::keep_small_strains(&mut self.solid);
+        self.optional.is_between_equilibria = true;
         move_from_rest(self, false);
         DynamicPhase {
             begin: time,
@@ -86,6 +85,7 @@ impl Scene {
     /// Goes on with motion that a checkpoint interrupted.
     pub fn resume_motion(&mut self, interlude: &DynamicPhase) {
         self.settings.damping = interlude.damping;
+        self.optional.is_between_equilibria = true;
     }
 
     /// Advances the scene by a step with its ledger; ends the motion at the beginning of that step if it has died by then,

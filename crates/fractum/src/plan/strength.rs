@@ -2,7 +2,7 @@
 
 use fractum_case::build::WeibullReport;
 use fractum_case::model::{BodyKind, Case, Distribution, Reference};
-use fractum_fem::RateCurves;
+use fractum_fem::{IN_RESERVE, RateCurves};
 use fractum_output::number::quantity;
 use fractum_scene::Scene;
 
@@ -39,7 +39,7 @@ impl Plan {
             self.add("rate", text);
             // The largest length goes with one over the strength squared.
             let (_, ratio) = scene.solid.length_report(index);
-            let most = (ratio.max(0.9) / ratio).sqrt();
+            let most = (ratio.max(IN_RESERVE) / ratio).sqrt();
             let grows = if energy.is_empty() { "" } else { ", more where the fracture energy grows" };
             self.add(
                 "",
