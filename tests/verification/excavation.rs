@@ -1,5 +1,6 @@
 //! Bodies that a stage takes out: Kirsch's hole in stressed rock, in several steps, at rest and in motion.
 
+use std::collections::HashSet;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -31,6 +32,8 @@ struct Quarter {
     damage: Option<DamageLaw>,
     /// Parts that the core is cut into, by angle.
     parts: usize,
+    /// What comes in where the core was, from this ring on.
+    lining: Option<(Elastic, usize)>,
     /// Stress of the far field [Pa].
     stress: [f64; 2],
     /// Acceleration along y [m/s²].
@@ -40,8 +43,8 @@ struct Quarter {
 impl Quarter {
     fn new(elastic: Elastic, stress: [f64; 2]) -> Self {
         let (formulation, kinematics) = (Formulation::Smoothed, Kinematics::Small);
-        let (shape, damage, gravity) = (ElementKind::T3, None, 0.0);
-        Quarter { radius: 0.01, shape, elastic, formulation, kinematics, damage, parts: 1, stress, gravity }
+        let (shape, damage, lining, gravity) = (ElementKind::T3, None, None, 0.0);
+        Quarter { radius: 0.01, shape, elastic, formulation, kinematics, damage, parts: 1, lining, stress, gravity }
     }
 
     fn layers(&self) -> usize {
@@ -113,17 +116,24 @@ impl Quarter {
     fn solid(&self) -> Solid {
         let mut rock = Vec::new();
         let mut core = vec![Vec::new(); self.parts];
+        let mut lining = Vec::new();
         for ring in 0..RINGS {
             for sector in 0..SECTORS {
-                let own = self.cells(ring, sector).into_iter().flat_map(|triangle| self.elements(triangle));
+                let own: Vec<[u32; 4]> =
+                    self.cells(ring, sector).into_iter().flat_map(|triangle| self.elements(triangle)).collect();
+                if self.lining.is_some_and(|(_, first)| (first..IN_CORE).contains(&ring)) {
+                    lining.extend(&own);
+                }
                 match ring < IN_CORE {
                     true => core[sector * self.parts / SECTORS].extend(own),
                     false => rock.extend(own),
                 }
             }
         }
-        let bodies = std::iter::once(rock).chain(core).enumerate().map(|(index, elements)| {
-            let body = Body::new(&format!("body {index}"), self.shape, elements, self.elastic);
+        let own = std::iter::once(rock).chain(core).map(|elements| (elements, self.elastic));
+        let own = own.chain(self.lining.map(|(elastic, _)| (lining, elastic)));
+        let bodies = own.enumerate().map(|(index, (elements, elastic))| {
+            let body = Body::new(&format!("body {index}"), self.shape, elements, elastic);
             let body =
                 Body { plane: Plane::Strain, formulation: self.formulation, kinematics: self.kinematics, ..body };
             self.damage.iter().fold(body, |body, law| body.with_damage(law.clone()))
@@ -192,12 +202,18 @@ impl Quarter {
 }
 
 fn at_once(bodies: Vec<usize>, over: Option<f64>, is_smooth: bool) -> Excavation {
-    Excavation { bodies, over, share: 1.0, is_smooth }
+    Excavation { bodies, installed: Vec::new(), over, share: 1.0, is_smooth }
 }
 
-/// The rock at rest under its stress, with the core.
+/// The scene of the first stage, in which the lining is not there yet.
+fn first_stage(quarter: &Quarter, end: f64) -> Scene {
+    let waits = quarter.lining.map(|_| quarter.parts + 1);
+    quarter.scene(end, 0.0, waits.as_ref().map(|body| (at_once(Vec::new(), None, false), std::slice::from_ref(body))))
+}
+
+/// The rock at rest under its stress, with the core and without a lining.
 fn loaded(quarter: &Quarter) -> Scene {
-    let mut scene = quarter.scene(1.0, 0.0, None);
+    let mut scene = first_stage(quarter, 1.0);
     let mut solver = StaticSolver::new(&scene, statics(0.5, 1.0)).unwrap();
     while !solver.is_finished(&scene) {
         solver.step(&mut scene).unwrap();
@@ -317,6 +333,68 @@ fn before_its_forces_fade_nothing_moves() {
     }
 }
 
+/// A lining of this ring and what is inside of it, from the radius over that of the hole on: radial way of its outer face per pressure on it [m/Pa].
+fn lining_way(quarter: &Quarter) -> f64 {
+    let (Elastic { young_modulus, poisson_ratio: nu, .. }, first) = quarter.lining.unwrap();
+    let inner = (first as f64 / IN_CORE as f64).powi(2);
+    quarter.radius * (1.0 + nu) / young_modulus * ((1.0 - 2.0 * nu) + inner) / (1.0 - inner)
+}
+
+/// Lamé: rock that has gone a part of its way meets a ring or a disc without stress, and both go on together.
+#[test]
+fn a_lining_comes_in_without_stress_and_bears_its_part_of_the_rest() {
+    let pressure = 3e6;
+    for (nu, share, stiff, first, shape, formulation, radius) in [
+        (0.0, 0.4, 1.0, 0, ElementKind::T3, Formulation::Smoothed, 0.01),
+        (0.2, 0.4, 5.0, 3, ElementKind::T3, Formulation::Smoothed, 5.0),
+        (0.3, 0.7, 0.2, 3, ElementKind::T4, Formulation::Smoothed, 5.0),
+        (0.2, 0.1, 2.0, 0, ElementKind::T3, Formulation::Standard, 10.0),
+        (0.45, 0.5, 3.0, 2, ElementKind::T3, Formulation::Smoothed, 5.0),
+    ] {
+        let lining = Elastic { young_modulus: stiff * CONCRETE.young_modulus, poisson_ratio: 0.2, ..CONCRETE };
+        let lining = Some((lining, first));
+        let quarter = Quarter { shape, formulation, radius, lining, ..Quarter::new(rock(nu), [-pressure; 2]) };
+        let what = format!("{nu}, {share}, {stiff}, {first}, {shape:?}, {formulation:?}");
+        let mut scene = loaded(&quarter);
+        let wall = quarter.node(IN_CORE, 0, 0) as usize;
+        let way = |scene: &Scene| scene.solid.displacement[wall].x;
+        let at_first = way(&scene);
+        let excavation = Excavation { share, ..at_once(vec![1], None, false) };
+        rest(&mut scene, quarter.scene(2.0, 0.0, Some((excavation, &[1, 2]))), [1.0, 2.0]);
+        let bare = way(&scene) - at_first;
+        let before = scene.clone();
+        // It bears nothing as long as nothing fades.
+        let mut still = loaded(&quarter);
+        rest(&mut still, quarter.scene(2.0, 0.0, Some((at_once(vec![1], None, false), &[1, 2]))), [1.0, 2.0]);
+        let bare_for_good = still.clone();
+        let comes = Excavation { installed: vec![2], ..at_once(Vec::new(), None, false) };
+        rest(&mut still, quarter.scene(3.0, 0.0, Some((comes.clone(), &[1]))), [1.0, 3.0]);
+        let moved = difference(&still, &bare_for_good);
+        assert!(moved < 1e-9, "{what}: {moved:e}");
+        let bears = fields::element_fields(&still.solid, 2).iter().map(|(s, _)| s.dot(*s)).fold(0.0, f64::max).sqrt();
+        assert!(bears < 1e-6 * pressure, "{what}: {bears}");
+        rest(&mut scene, quarter.scene(3.0, 0.0, Some((comes, &[1]))), [0.5, 3.0]);
+        let rock_way = quarter.radius * (1.0 + nu) / CONCRETE.young_modulus;
+        let expected = [share * rock_way, (1.0 - share) / (1.0 / rock_way + 1.0 / lining_way(&quarter))];
+        let found = [-bare, bare + at_first - way(&scene)].map(|way| way / pressure);
+        println!("{what}: {found:?} {expected:?}");
+        let allowed = if formulation == Formulation::Standard { 0.05 } else { 0.02 };
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found / expected - 1.0).abs() < allowed, "{what}: {found:e}, {expected:e}");
+        }
+        assert!(scene.ledger().relative_residual() < 1e-9, "{what}: {}", scene.ledger().relative_residual());
+        // A node on which nothing has mass keeps what it had.
+        let nodes =
+            [0, 2].map(|body| scene.solid.body(body).elements.iter().flatten().copied().collect::<HashSet<u32>>());
+        let there = nodes[0].union(&nodes[1]).map(|&node| scene.solid.mass[node as usize]).sum::<f64>();
+        let own: f64 =
+            [0, 2].iter().flat_map(|&body| scene.solid.element_volumes(body)).sum::<f64>() * CONCRETE.density;
+        assert!((there / own - 1.0).abs() < 1e-9, "{what}: {there}, {own}");
+        assert_eq!(scene.counts().removed_elements, 0);
+        assert!(scene.left().elements < before.left().elements && scene.left().pieces == 1, "{what}");
+    }
+}
+
 #[test]
 fn in_three_steps_it_is_as_at_once() {
     let quarter = Quarter { parts: 3, gravity: -2e3, ..Quarter::new(rock(0.25), [-1.5e6, -3e6]) };
@@ -353,7 +431,7 @@ fn moving(quarter: &Quarter, over: f64, end: f64) -> Scene {
 fn started(quarter: &Quarter) -> Scene {
     let small = Quarter { kinematics: Kinematics::Small, damage: None, ..quarter.clone() };
     let at_rest = loaded(&small);
-    let mut scene = quarter.scene(1.0 + 0.01 * crossing(quarter), 0.0, None);
+    let mut scene = first_stage(quarter, 1.0 + 0.01 * crossing(quarter));
     scene.solid.displacement = at_rest.solid.displacement.clone();
     scene.solid.initial_displacement = at_rest.solid.displacement;
     scene.clock.time = 1.0;
@@ -391,19 +469,20 @@ fn in_motion_it_comes_to_the_same_rest() {
 #[test]
 fn in_motion_the_balance_closes_and_threads_and_resume_change_no_bit() {
     // The last one cracks at the crown.
-    for (kinematics, damage, stress, allowed) in [
-        (Kinematics::Small, None, [-1.5e6, -3e6], 1e-9),
-        (Kinematics::Corotational, None, [-1.5e6, -3e6], 1e-6),
-        (Kinematics::Auto, Some(softening(60.0)), [-0.3e6, -9e6], 1e-3),
+    for (kinematics, damage, stress, allowed, lining) in [
+        (Kinematics::Small, None, [-1.5e6, -3e6], 1e-9, Some(2)),
+        (Kinematics::Corotational, None, [-1.5e6, -3e6], 1e-6, Some(2)),
+        (Kinematics::Auto, Some(softening(60.0)), [-0.3e6, -9e6], 1e-3, Some(3)),
     ] {
-        let quarter = Quarter { kinematics, damage, parts: 2, ..Quarter::new(rock(0.2), stress) };
+        let lining = lining.map(|first| (CONCRETE, first));
+        let quarter = Quarter { kinematics, damage, parts: 2, lining, ..Quarter::new(rock(0.2), stress) };
         let time = crossing(&quarter);
-        // The second part leaves while the first one still moves all.
+        // The second part leaves while the first one still moves all, and a lining comes in.
         let stages = || {
-            let first = quarter.scene(1.0 + 0.4 * time, 0.0, Some((at_once(vec![1], Some(0.1 * time), true), &[1])));
-            let second =
-                quarter.scene(1.0 + 1.4 * time, 0.0, Some((at_once(vec![2], Some(0.5 * time), true), &[1, 2])));
-            [first, second]
+            let (absent, installed) = if lining.is_some() { (&[1, 3][..], vec![3]) } else { (&[1][..], Vec::new()) };
+            let first = quarter.scene(1.0 + 0.4 * time, 0.0, Some((at_once(vec![1], Some(0.1 * time), true), absent)));
+            let leaves = Excavation { installed, ..at_once(vec![2], Some(0.5 * time), true) };
+            [first, quarter.scene(1.0 + 1.4 * time, 0.0, Some((leaves, &[1, 2])))]
         };
         let go = |scene: &mut Scene, until: u64| {
             while !scene.is_finished() && scene.clock.step < until {
@@ -447,7 +526,7 @@ fn in_motion_the_balance_closes_and_threads_and_resume_change_no_bit() {
         let middle = first.clock.step + 20;
         go(&mut first, middle);
         assert!(released_forces(&first).any(|(_, force)| force.norm() > 0.0));
-        let mut second = quarter.scene(2.0, 0.0, None);
+        let mut second = first_stage(&quarter, 2.0);
         second.solid.initial_displacement.clone_from(&first.solid.initial_displacement);
         stages().into_iter().for_each(|stage| second.begin_stage(stage, false));
         second.restore(first.state());

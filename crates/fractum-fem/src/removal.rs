@@ -1,11 +1,13 @@
 //! Elements that a crack has cut through leave; their mass stays on the nodes.
 
+use std::collections::BTreeSet;
+
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::Formulation;
 use crate::body::elasticity::Elasticity;
 use crate::cells::cell::Geometry;
-use crate::cells::kernel::elastic_strain;
+use crate::cells::kernel::{elastic_strain, total_strain};
 use crate::damage::edge::EdgeField;
 use crate::damage::edges_in_step::{Advance, EdgesInStep};
 use crate::divided::ALONE;
@@ -81,6 +83,24 @@ pub fn take_out_body(solid: &mut Solid, dt: f64, body: usize) -> f64 {
     touched.sort_unstable();
     touched.dedup();
     energy + leave_mass(solid, &touched)
+}
+
+/// Lets a body that was out come in whole, without stress at the displacements that its nodes have; returns the energy that comes with it, ½ m v² of what
+/// its nodes gain [J].
+pub fn put_in_body(solid: &mut Solid, body: usize) -> f64 {
+    forget_ahead(solid);
+    solid.bodies[body].alive.fill(true);
+    let elements: Vec<u32> = (0..solid.bodies[body].alive.len() as u32).collect();
+    rebuild_cells_around(solid, body, &elements);
+    let Solid { blocks, bodies, displacement, .. } = solid;
+    let own = &bodies[body].body;
+    for Block { cells, .. } in blocks.iter_mut().filter(|block| block.body == body) {
+        let strain = |cell| total_strain(cells, cell, displacement, own.kinematics);
+        cells.born = Some((0..cells.len()).map(strain).collect());
+    }
+    let nodes: BTreeSet<u32> = own.elements.iter().flat_map(|e| &e[..own.shape.node_count()]).copied().collect();
+    let nodes: Vec<u32> = nodes.into_iter().collect();
+    -leave_mass(solid, &nodes)
 }
 
 /// Leaves nodes the mass of the elements that are there; returns the kinetic energy that they lose [J].
@@ -188,14 +208,16 @@ fn step_energy(solid: &Solid, body: usize, dt: f64, cells: &[(u32, u32)]) -> f64
     all.into_iter().sum()
 }
 
-/// Recomputes the cells in which dead elements had a share, from the elements that are alive.
+/// Recomputes the cells in which elements have a share that have left or come in, from the elements that are alive.
 pub(crate) fn rebuild_cells_around(solid: &mut Solid, body: usize, elements: &[u32]) {
     let Solid { bodies, blocks, reference, copies, .. } = solid;
     let model = &bodies[body];
     if model.body.formulation == Formulation::Standard {
+        let geometry = Geometry { body: &model.body, nodes: reference };
         for &element in elements {
             let (block, cell) = model.location.of(element);
-            blocks[block as usize].cells.volume.get_mut(cell as usize).into_iter().for_each(|volume| *volume = 0.0);
+            let own = if model.alive[element as usize] { geometry.element(element as usize).0 } else { 0.0 };
+            blocks[block as usize].cells.volume.get_mut(cell as usize).into_iter().for_each(|volume| *volume = own);
         }
         if model.phase.is_some() {
             refresh_phase(solid, body, &touched_edges(&solid.bodies[body], elements));

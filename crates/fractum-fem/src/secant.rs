@@ -38,6 +38,8 @@ pub struct SecantCell<'a> {
     bedded: Option<(&'a Stiffness, f64)>,
     /// Stress of its thermal strain, the same in all directions, times V (1 - d) [N m]; of beds the thermal strain. 0 where nothing expands.
     thermal: f64,
+    /// Strain at which it is free of stress, where it came in during the run.
+    born: Option<&'a Sym3>,
 }
 
 impl SecantCell<'_> {
@@ -47,9 +49,11 @@ impl SecantCell<'_> {
         self.stress_beyond(h, 0.0)
     }
 
-    /// The same less a share of the thermal stress.
+    /// The same less a share of the thermal stress and of that at which it came in.
     #[inline]
     fn stress_beyond(&self, h: &Mat3, share: f64) -> Mat3 {
+        let since = self.born.map(|born| h - born.to_matrix() * share);
+        let h = since.as_ref().unwrap_or(h);
         let Some((stiffness, left)) = self.bedded else {
             let [lambda, mu] = self.lame;
             return (h + h.transpose()) * mu + Mat3::identity() * (lambda * h.trace() - share * self.thermal);
@@ -162,13 +166,13 @@ impl Solid {
                 let per_strain = |unit: f64| if bedded.is_some() { 1.0 } else { lambda * unit + 2.0 * mu };
                 let thermal = |own: &ThermalStrain| own.now(cell) * per_strain(own.unit.trace());
                 let thermal = cells.thermal.as_deref().map_or(0.0, thermal);
-                let lame = [lambda, mu];
-                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lame, bedded, thermal });
+                let (lame, born) = ([lambda, mu], cells.born.as_ref().map(|born| &born[cell]));
+                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lame, bedded, thermal, born });
             }
         }
     }
 
-    /// Forces that hold the displacements `field` against the secant stiffness and thermal strains [N].
+    /// Forces that hold the displacements `field` against the secant stiffness, thermal strains and those at which cells came in [N].
     pub fn secant_force(&self, damage: &CellDamage, field: &[Vec3], force: &mut [Vec3]) {
         add_up(self, damage, field, 1.0, force);
     }
@@ -344,7 +348,7 @@ impl Solid {
 
 /// Adds up the nodal forces of the cells under a field.
 ///
-/// - `share`: part of the thermal stresses that counts
+/// - `share`: part of the thermal stresses that counts, and of those at which cells came in
 fn add_up(solid: &Solid, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
     force.fill(Vec3::zeros());
     solid.for_each_cell(damage, |cell| {

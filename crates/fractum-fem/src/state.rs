@@ -46,6 +46,8 @@ pub struct SolidState {
     pub viscous_dissipation: f64,
     /// Viscous stress times volume of the cells, block by block; empty without viscosity.
     pub viscous: Vec<Vec<Sym3>>,
+    /// Strains at which the cells came in, block by block; empty of those that were there from the start.
+    pub born: Vec<Vec<Sym3>>,
 }
 
 impl Solid {
@@ -58,6 +60,7 @@ impl Solid {
             dissipated: self.blocks.iter().map(|block| block.dissipated).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
+            born: self.blocks.iter().map(|b| b.cells.born.as_deref().unwrap_or_default().to_vec()).collect(),
         }
     }
 
@@ -133,6 +136,9 @@ impl Solid {
         let is_elsewhere = |block: &Block| block.items.is_empty();
         for (block, viscous) in self.blocks.iter_mut().zip(state.viscous).filter(|(block, _)| !is_elsewhere(block)) {
             block.viscous.stress = viscous;
+        }
+        for (block, born) in self.blocks.iter_mut().zip(state.born).filter(|(_, born)| !born.is_empty()) {
+            block.cells.born = Some(born.into());
         }
         for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
             block.dissipated = dissipated;

@@ -33,6 +33,11 @@ impl Left {
         self.points.push(point);
     }
 
+    /// Has nodes, which are ascending, back.
+    pub(crate) fn bring_back(&mut self, nodes: &[u32]) {
+        self.points.retain(|point| nodes.binary_search(point).is_err());
+    }
+
     /// Nodes that have left a scene of so many nodes.
     pub(crate) fn nodes(&self, count: usize) -> impl Iterator<Item = u32> + '_ {
         self.points.iter().copied().filter(move |&point| (point as usize) < count)

@@ -1,4 +1,4 @@
-//! What a stage changes: supports, loads, settings, and bodies that leave.
+//! What a stage changes: supports, loads, settings, and bodies that leave and come in.
 
 use fractum_fem::{Solid, removal};
 use fractum_math::Vec3;
@@ -9,7 +9,7 @@ use crate::leave::let_go;
 use crate::scene::Scene;
 
 impl Scene {
-    /// Goes on with the supports, loads and settings of another scene of the same solids, without the bodies that leave.
+    /// Goes on with the supports, loads and settings of another scene of the same solids, without the bodies that leave and with those that come in.
     ///
     /// - `moving`: whether the scene moves
     pub fn begin_stage(&mut self, next: Scene, moving: bool) {
@@ -27,17 +27,32 @@ impl Scene {
         self.removals.domain = next.removals.domain;
         if let (Some(excavation), Some(bear)) = (excavation, bear) {
             excavate(self, &excavation, since, &bear);
+            install(self, &excavation.installed);
             self.books.left += stored - self.optional.surface_supports.stored();
         }
     }
 }
 
-/// The scene of a later stage, which begins without some bodies, see [`Scene::begin_stage`].
+/// The scene of a stage that begins without some bodies, see [`Scene::begin_stage`].
 ///
-/// - `gone`: all that have left by then
+/// - `gone`: all that have left by then or have not come in yet
 pub fn with_excavation(mut scene: Scene, excavation: Excavation, gone: &[usize]) -> Scene {
-    gone.iter().for_each(|&body| _ = removal::take_out_body(&mut scene.solid, 0.0, body));
-    scene.supports.hold(&orphans(&scene.solid, gone), scene.solid.reference.len());
+    let mut elements: Vec<(usize, u32)> = Vec::new();
+    for &body in gone {
+        removal::take_out_body(&mut scene.solid, 0.0, body);
+        elements.extend((0..scene.solid.alive(body).len() as u32).map(|element| (body, element)));
+    }
+    let (nodes, mut leaves) = (orphans(&scene.solid, gone), vec![false; scene.solid.reference.len()]);
+    scene.supports.hold(&nodes, leaves.len());
+    scene.removals.left.elements += elements.len();
+    for node in nodes {
+        scene.removals.left.push(node);
+        leaves[node as usize] = true;
+    }
+    let_go(&mut scene, &leaves, &elements);
+    if !gone.is_empty() && !scene.settings.time_step.element_bound {
+        scene.frequencies.stable = scene.solid.stable_step();
+    }
     scene.optional.excavation = Some(Box::new(excavation));
     scene
 }
@@ -52,7 +67,7 @@ pub fn released_forces(scene: &Scene) -> impl Iterator<Item = (u32, Vec3)> {
 /// - `dt`: time since the forces were last computed; 0 at rest [s]
 /// - `bear`: forces on all nodes before, see [`forces`]
 fn excavate(scene: &mut Scene, excavation: &Excavation, dt: f64, bear: &[Vec3]) {
-    let Excavation { bodies, over, share, is_smooth } = excavation;
+    let Excavation { bodies, over, share, is_smooth, .. } = excavation;
     let begin = scene.clock.time;
     let end = over.map_or(scene.settings.time_step.end, |over| begin + over);
     let touched = nodes_of(&scene.solid, bodies);
@@ -90,6 +105,25 @@ fn excavate(scene: &mut Scene, excavation: &Excavation, dt: f64, bear: &[Vec3]) 
     });
 }
 
+/// Lets bodies come in.
+fn install(scene: &mut Scene, bodies: &[usize]) {
+    if bodies.is_empty() {
+        return;
+    }
+    let nodes = all_nodes(&scene.solid, bodies);
+    let Scene { solid, removals, books, .. } = &mut *scene;
+    removals.left.bring_back(&nodes);
+    let before: Vec<f64> = nodes.iter().map(|&node| solid.mass[node as usize]).collect();
+    for &body in bodies {
+        books.left -= removal::put_in_body(solid, body);
+        removals.left.elements -= solid.alive(body).len();
+    }
+    for (&node, before) in nodes.iter().zip(before) {
+        let gained = solid.mass[node as usize] - before;
+        removals.left.momentum -= solid.velocity[node as usize] * gained;
+    }
+}
+
 /// Forces on all nodes as they stand, of stress, loads and springs on facets [N].
 ///
 /// - `dt`: as in [`excavate`]
@@ -119,13 +153,19 @@ fn nodes_of(solid: &Solid, bodies: &[usize]) -> Vec<u32> {
 fn orphans(solid: &Solid, gone: &[usize]) -> Vec<u32> {
     let all: Vec<usize> = (0..solid.body_count()).collect();
     let there = nodes_of(solid, &all);
+    let mut nodes = all_nodes(solid, gone);
+    nodes.retain(|node| there.binary_search(node).is_err());
+    nodes
+}
+
+/// Nodes of bodies, whether these are there or not, ascending.
+fn all_nodes(solid: &Solid, bodies: &[usize]) -> Vec<u32> {
     let of_body = |&body: &usize| {
         let corners = solid.body(body).shape.node_count();
         solid.body(body).elements.iter().flat_map(move |nodes| nodes[..corners].iter().copied())
     };
-    let mut nodes: Vec<u32> = gone.iter().flat_map(of_body).collect();
+    let mut nodes: Vec<u32> = bodies.iter().flat_map(of_body).collect();
     nodes.sort_unstable();
     nodes.dedup();
-    nodes.retain(|node| there.binary_search(node).is_err());
     nodes
 }

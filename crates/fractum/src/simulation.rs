@@ -297,7 +297,9 @@ impl Simulation {
         };
         let leaving = case.excavation.iter().flat_map(|excavation| &excavation.bodies);
         let leaving: String = leaving.map(|name| format!(", body \"{}\" leaves", name.value)).collect();
-        let text = format!("{}: stage \"{}\"{leaving}", self.instant(self.time()), case.source.stage);
+        let coming = case.excavation.iter().flat_map(|excavation| &excavation.installed);
+        let coming: String = coming.map(|name| format!(", body \"{}\" comes in", name.value)).collect();
+        let text = format!("{}: stage \"{}\"{leaving}{coming}", self.instant(self.time()), case.source.stage);
         self.messages.tell(&text)?;
         self.solver.effort().map_or(Ok(()), |effort| self.messages.log.line(effort))?;
         let was_moving = self.solver.moves();

@@ -86,13 +86,14 @@ fn a_case_that_promises_something_says_something_of_each_neighbour() {
 }
 
 /// One case of every kind, small ones.
-const KINDS: [&str; 21] = [
+const KINDS: [&str; 22] = [
     "absorbing/normal",
     "ball-on-edge/ball",
     "bonded-box/tension-vibration",
     "brazilian-static/coarse",
     "cantilever-static/plane-depth-2",
     "excavation/hole-motion",
+    "excavation/lining",
     "excavation/tunnel",
     "falling-block/block",
     "gas-blast/gas",

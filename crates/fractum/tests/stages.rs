@@ -172,10 +172,14 @@ fn hole(changes: &[(&str, &str)]) -> Workplace {
 
 #[test]
 fn excavation_goes_on_with_the_same_bits_on_threads_and_after_a_stop() {
-    let place = hole(&[("end = \"0.6 ms\"", "end = \"0.3 ms\"")]);
+    // The core leaves, and another comes in where it was.
+    let fill = "[[bodies]]\nname = \"fill\"\nkind = \"solid\"\ngroup = \"core\"\nmaterial = \"shale\"\n[in_situ]";
+    let stage = "[[stages]]\nname = \"fill\"\ninstall = [\"fill\"]\nsolver = { kind = \"explicit\", end = \"0.4 ms\" }\n\n[output]";
+    let place = hole(&[("end = \"0.6 ms\"", "end = \"0.3 ms\""), ("[in_situ]", fill), ("[output]", stage)]);
     let plan = place.fractum(&["check", "case.toml"]);
     assert_eq!(plan.code, Some(0), "{}", plan.stderr);
-    for words in ["body \"core\" leaves: ", "what they bore fades over 200 µs"] {
+    for words in ["body \"core\" leaves: ", "what they bore fades over 200 µs", "body \"fill\" comes in without stress"]
+    {
         assert!(plan.stdout.contains(words), "{words}: {}", plan.stdout);
     }
     let whole = run(&place, "whole", "1");
@@ -211,6 +215,7 @@ fn wrong_excavation_is_explained() {
     let excavate = "excavate = [\"core\"]";
     let before = "name = \"before\"\n";
     let third = "[[stages]]\nname = \"late\"\nexcavate = [\"core\"]\nsolver = { kind = \"explicit\", end = \"1 ms\" }\n\n[output]";
+    let lining = "[[bodies]]\nname = \"lining\"\nkind = \"solid\"\ngroup = \"core\"\nmaterial = \"shale\"\n[in_situ]";
     let held = "[[supports]]\nname = \"in the core\"\nwhere = \"hypot(x, y) < 5 mm\"\nfix = \"xy\"\nstages = [\"hole\"]\n[in_situ]";
     let pushed = "[[loads]]\nname = \"inside\"\nwhere = \"hypot(x, y) < 5 mm\"\nforce = { x = \"1 N\" }\nstages = [\"hole\"]\n[in_situ]";
     for (from, to, words) in [
@@ -226,6 +231,12 @@ fn wrong_excavation_is_explained() {
         ("release = \"0.2 ms\"", "release = \"2 mm\"", "a time"),
         ("release = \"0.2 ms\"", "releas = \"2 ms\"", "did you mean release?"),
         (before, "name = \"before\"\nexcavate = [\"core\"]\n", "in the first stage"),
+        (before, "name = \"before\"\ninstall = [\"core\"]\n", "in the first stage"),
+        (excavate, "excavate = [\"core\"]\ninstall = [\"cor\"]", "did you mean \"core\"?"),
+        (excavate, "excavate = [\"core\"]\ninstall = [\"core\"]", "comes in in stage \"hole\" only"),
+        (excavate, "install = [\"core\", \"core\"]", "is named 2 times"),
+        (excavate, "install = [\"rock\"]\nexcavate = [\"core\"]", "one solid at least that stays"),
+        ("[in_situ]", lining, "in stage \"before\" both are there"),
         ("[output]", third, "has left in stage \"hole\""),
         ("[in_situ]", held, "have left in stage \"hole\""),
         ("[in_situ]", pushed, "have left in stage \"hole\""),

@@ -1,5 +1,6 @@
 //! Solid bodies: elements, nodes, materials, strength.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use fractum_fem as fem;
@@ -11,7 +12,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 
 use super::{Context, use_in_words};
-use crate::model::{BodyKind, Damage, GroupUse, SolidBody};
+use crate::model::{BodyKind, Case, Damage, GroupUse, SolidBody};
 use crate::{Diagnostic, Place};
 
 /// A solid body of the case with its elements in the mesh.
@@ -141,14 +142,29 @@ fn check_dimension(context: &mut Context<'_>, part: &Part) {
     }
 }
 
-/// An element may belong to one body only.
+/// Numbers of the solids that have left before the present stage, or come in after it.
+pub(super) fn gone(case: &Case, parts: &[Part]) -> Vec<usize> {
+    let Some(excavation) = &case.excavation else { return Vec::new() };
+    numbers(parts, excavation.gone.iter().map(String::as_str))
+}
+
+/// Numbers of the parts of these names.
+pub(super) fn numbers<'n>(parts: &[Part], names: impl Iterator<Item = &'n str>) -> Vec<usize> {
+    names.filter_map(|name| parts.iter().position(|part| part.name == name)).collect()
+}
+
+/// An element may belong to one body only of those that are there at a time.
 fn check_overlap(context: &mut Context<'_>, parts: &[Part]) {
+    let gone = gone(context.case, parts);
     for (index, part) in parts.iter().enumerate() {
-        for other in &parts[..index] {
+        for (before, other) in parts[..index].iter().enumerate() {
+            let at_once = !gone.contains(&index) && !gone.contains(&before);
             if other.shape != part.shape {
                 let found = format!("= \"{}\" mixes with \"{}\"", part.body.group.value, other.body.group.value);
                 context.error(&part.place, found, "all solid bodies of triangles, or all of tetrahedra");
-            } else if let Some(&element) = part.elements.iter().find(|e| other.elements.binary_search(e).is_ok()) {
+            } else if let Some(&element) =
+                part.elements.iter().find(|e| at_once && other.elements.binary_search(e).is_ok())
+            {
                 let tags = match part.shape {
                     fem::ElementKind::T4 => &context.mesh.tetrahedron_tags,
                     fem::ElementKind::T3 => &context.mesh.triangle_tags,
@@ -157,7 +173,13 @@ fn check_overlap(context: &mut Context<'_>, parts: &[Part]) {
                     "= \"{}\": element {} also belongs to body \"{}\"",
                     part.body.group.value, tags[element as usize], other.name
                 );
-                context.error(&part.place, found, "bodies without common elements");
+                let mut note = Diagnostic::error(&part.place, found).expected("bodies without common elements");
+                if context.case.excavates() {
+                    let stage = &context.case.source.stage;
+                    note = note
+                        .remedy(format!("in stage \"{stage}\" both are there; excavate one before the other comes in"));
+                }
+                context.diagnostics.push(note);
             }
         }
     }
@@ -327,7 +349,12 @@ pub(super) fn boundary(context: &Context<'_>, parts: &[Part], numbering: &Number
         return division.boundary.all.iter().map(|facet| facet.map(scene)).collect();
     }
     let there = parts.iter().enumerate().filter(|(index, _)| !gone.contains(index));
-    let elements: Vec<[u32; 4]> = there.flat_map(|(_, part)| element_nodes(context, part)).collect();
+    let mut known = HashSet::new();
+    let mut elements: Vec<[u32; 4]> = there.flat_map(|(_, part)| element_nodes(context, part)).collect();
+    if context.case.excavates() {
+        // Bodies that are there one after the other may have common elements.
+        elements.retain(|nodes| known.insert(*nodes));
+    }
     if parts.iter().all(|part| part.shape == fem::ElementKind::T4) {
         topology::boundary_of_tetrahedra(&elements).iter().map(|f| f.nodes.map(scene)).collect()
     } else {

@@ -42,7 +42,7 @@ pub(super) fn in_situ_loads(
     let Some(stress) = &context.case.in_situ else { return Vec::new() };
     for group in &stress.groups {
         let on_group = Selection::of_group(group.clone());
-        on.extend(match numbering.gone.is_empty() {
+        on.extend(match context.case.is_first_stage() {
             true => context.selected_facets(&on_group, numbering, surface),
             // All facets of the group may have left.
             false => context.facets(&on_group, numbering, surface),
@@ -54,13 +54,19 @@ pub(super) fn in_situ_loads(
     if on.is_empty() && context.diagnostics.is_empty() {
         context.error(&stress.place, " acts on no facet", "absorbing or elastic supports, or groups of facets");
     }
-    if numbering.gone.is_empty() {
+    if context.case.is_first_stage() {
         check_weight(context, &stress.place, &field, solid);
     }
-    if context.diagnostics.is_empty() && numbering.gone.is_empty() {
+    if context.diagnostics.is_empty() && context.case.is_first_stage() {
         check_in_situ_supports(context, &field, solid, numbering);
     }
     if context.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }
+}
+
+/// Numbers of the bodies that are there.
+fn bodies_there(context: &Context<'_>, solid: &Solid) -> Vec<usize> {
+    let is_gone = |name: &String| context.case.excavation.as_ref().is_some_and(|own| own.gone.contains(name));
+    (0..solid.body_count()).filter(|&body| !is_gone(&solid.body(body).name)).collect()
 }
 
 /// The stress as a linear function.
@@ -99,7 +105,7 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
     }
     let axes = if solid.is_plane() { 2 } else { 3 };
     let divergence = Vec3::from_fn(|a, _| (0..axes).map(|k| field.slope[k].to_matrix()[(a, k)]).sum::<f64>());
-    for body in 0..solid.body_count() {
+    for body in bodies_there(context, solid) {
         let density = solid.body(body).elastic.density;
         let weight = gravity * density;
         let scale = field.largest / field.size.max() * BALANCE + BALANCE * weight.norm();
@@ -123,12 +129,13 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
 
 /// Supports must be able to follow the displacements of the far field: what they hold cannot be strained.
 fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &Solid, numbering: &Numbering) {
-    let elastic = |body: usize| solid.body(body).elastic;
     let same = |a: &Body, b: &Body| {
         let moduli = |body: &Body| (body.elastic.young_modulus, body.elastic.poisson_ratio);
         moduli(a) == moduli(b) && a.bedding == b.bedding
     };
-    if (1..solid.body_count()).any(|body| !same(solid.body(0), solid.body(body))) {
+    let there = bodies_there(context, solid);
+    let Some(&first) = there.first() else { return };
+    if there.iter().any(|&body| !same(solid.body(first), solid.body(body))) {
         return; // Layers have no common far field: their supports show in the balance of forces.
     }
     let mut held: Vec<(usize, Vec3, usize)> = Vec::new();
@@ -141,7 +148,7 @@ fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &S
             held.extend(axes.map(|axis| (index, numbering.positions[node as usize], axis)));
         }
     }
-    let displacement = field.displacements(solid.body(0));
+    let displacement = field.displacements(solid.body(first));
     let rows = held.iter().map(|&(_, place, axis)| (rigid(place, field, axis), displacement(place)[axis]));
     let (mut gram, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
     for (row, u) in rows.clone() {
@@ -153,7 +160,7 @@ fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &S
     else {
         return;
     };
-    let strain = field.largest / elastic(0).young_modulus;
+    let strain = field.largest / solid.body(first).elastic.young_modulus;
     let off = rows.map(|(row, u)| (row.dot(&motion) + u).abs());
     let worst = off.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     let Some((row, off)) = worst.filter(|(_, off)| *off > FOLLOWS * strain * field.size.norm()) else { return };

@@ -80,7 +80,9 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
 }
 
 /// Solids that lie within each other: their mass and stiffness are counted twice there.
-pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+///
+/// - `is_gone`: those that are not there
+pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own], is_gone: impl Fn(&Own) -> bool) -> Vec<Diagnostic> {
     let boxes: Vec<(Vec3, Vec3)> = bodies.iter().map(|body| extent(mesh, std::slice::from_ref(body))).collect();
     let axes = if bodies.iter().all(|body| body.plane) { 0..2 } else { 0..3 };
     let apart = |a: usize, b: usize| {
@@ -88,8 +90,9 @@ pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
         axes.clone().any(|axis| high[axis] <= from[axis] || to[axis] <= low[axis])
     };
     let mut doubts = Vec::new();
-    for (index, second) in bodies.iter().enumerate() {
-        for (_, first) in bodies[..index].iter().enumerate().filter(|(before, _)| !apart(*before, index)) {
+    for (index, second) in bodies.iter().enumerate().filter(|(_, own)| !is_gone(own)) {
+        let others = bodies[..index].iter().enumerate().filter(|(_, own)| !is_gone(own));
+        for (_, first) in others.filter(|(before, _)| !apart(*before, index)) {
             // A body of few large elements may hold none of the middles of the other.
             let shares = [(second, first), (first, second)].map(|(own, other)| within(mesh, own, other));
             let Some((share, of)) = shares.into_iter().zip([second, first]).find(|(share, _)| *share > 0.0) else {

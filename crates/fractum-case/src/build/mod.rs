@@ -204,7 +204,7 @@ impl<'a> Context<'a> {
         let left = excavation::what_is_left(self, &parts, &numbering);
         let (loaded, facets) = left.as_ref().map_or((&numbering, &boundary), |(numbering, facets)| (numbering, facets));
         let bare = Surface::new(facets, &parts, &numbering.positions);
-        warnings.extend(excavation::doubts(self, loaded));
+        warnings.extend(excavation::doubts(self, &parts, loaded));
         let (supports, surface_supports, loads) =
             self.supports_and_loads(&solid, &parts, loaded, &bare, &boundary_of_parts)?;
         let statics = statics::statics(self, &solid, &numbering);
@@ -243,8 +243,8 @@ impl<'a> Context<'a> {
             &mut warnings,
         )?;
         let scene = heat::with_heat(self, scene, &parts, &numbering, &surface)?;
-        let scene = self.made_ready(scene, &probes, &mut warnings)?;
         let scene = excavation::with_excavation(self.case, scene, &parts);
+        let scene = self.made_ready(scene, &probes, &mut warnings)?;
         Some(BuiltScene {
             statics: statics.filter(|_| statics::is_held(self, &scene)),
             scene,
@@ -348,8 +348,7 @@ impl<'a> Context<'a> {
             }
         }
         // Later stages begin with the state of those before.
-        let is_first = self.case.excavation.is_none() || !self.case.later.is_empty();
-        if let Some(stress) = self.case.in_situ.as_ref().filter(|_| is_first)
+        if let Some(stress) = self.case.in_situ.as_ref().filter(|_| self.case.is_first_stage())
             && let Err(error) = scene.start_at_rest()
         {
             self.error(&stress.place.clone(), format!(": {error}"), "");

@@ -38,7 +38,9 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     let mut doubts: Vec<Diagnostic> = left_out(case, mesh, &bodies).into_iter().collect();
     doubts.extend(beyond_bodies(case, mesh, &bodies));
     // What lies within another body is told, and not also that it touches.
-    let mut meets = overlapping(mesh, &bodies);
+    // One that comes in later may lie where another has left by then.
+    let gone = |own: &Own| case.excavation.as_ref().is_some_and(|excavation| excavation.gone.contains(&own.name.value));
+    let mut meets = overlapping(mesh, &bodies, gone);
     if meets.is_empty() {
         meets = coincident(case, mesh, &bodies);
     }

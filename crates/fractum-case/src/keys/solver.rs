@@ -20,6 +20,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("stages[]", K::Tables, "", "Parts of a run, one after the other, instead of [solver]: static stages first, then explicit ones"),
     key("stages[].name", K::Text, "required", "Name, unique among stages"),
     key("stages[].excavate", K::Names, "none", "Solid bodies that leave as the stage begins, not in the first one. The forces that they bore stay on the nodes of the others and fade"),
+    key("stages[].install", K::Names, "none", "Solid bodies that are not there before and come in as the stage begins, without stress at the displacements that their nodes have; not in the first one"),
     key("stages[].release", K::Quantity(D::TIME), "to the end of the stage", "Time over which the forces of excavated bodies fade, ≥ 0; at rest in proportion to time, in motion as a smooth step"),
     key("stages[].release_share", K::Quantity(D::NONE), "all of it", "Part of the forces of the bodies excavated in this stage that fades in it, above 0 and at most 1; the rest fades in the next stage"),
     key("stages[].solver", K::Table, "required", "As [solver]; end is the time at which the stage ends, on the one clock of the run"),

@@ -58,7 +58,7 @@ impl Measure for Stress {
 /// probes find them done.
 const MANY: usize = 8;
 
-/// Volume mean over elements.
+/// Volume mean over elements, but for those of bodies that have left or have not come in yet; not a number where no other is left.
 #[derive(Debug)]
 struct OfElements {
     /// Bodies and their elements.
@@ -71,15 +71,17 @@ impl Probe for OfElements {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let (solid, [normal, along]) = (&probed.scene.solid, &self.between);
         let (mut sum, mut volume) = (0.0, 0.0);
+        let is_out = |body: usize| probed.scene.left().elements > 0 && !solid.alive(body).contains(&true);
+        let out: Vec<bool> = (0..solid.body_count()).map(is_out).collect();
         let many = |body: usize| MANY * self.elements.len() >= solid.body(body).elements.len();
-        for &(body, element) in &self.elements {
+        for &(body, element) in self.elements.iter().filter(|(body, _)| !out[*body]) {
             let v = solid.element_volumes(body)[element as usize];
             let middle = solid.element_middle(body, element);
             let stress = probed.stress(body, element, many(body)).to_matrix();
             sum += v * normal.at(&middle).dot(&(stress * along.at(&middle)));
             volume += v;
         }
-        sum / volume
+        if volume > 0.0 { sum / volume } else { f64::NAN }
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

@@ -236,9 +236,14 @@ impl Case {
         self.solver.kind == SolverKind::Explicit && (self.flows.gas.is_some() || self.loads.iter().any(pulse))
     }
 
-    /// Whether a stage takes bodies out.
+    /// Whether a stage takes bodies out or puts some in.
     pub fn excavates(&self) -> bool {
         self.excavation.is_some()
+    }
+
+    /// Whether it is the only stage, or the first one of those that take bodies out or put some in.
+    pub fn is_first_stage(&self) -> bool {
+        self.excavation.is_none() || !self.later.is_empty()
     }
 
     /// Doubtful choices that do not keep the case from running.

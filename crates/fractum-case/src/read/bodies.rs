@@ -64,7 +64,8 @@ impl Taken {
         self.names.insert(name.value.clone(), name.place.line);
         let BodyKind::Solid(solid) = &body.kind else { return true };
         let group = &solid.group;
-        if let Some(other) = self.groups.get(&group.value) {
+        // In stages one may come in where the other has left; who is there at a time, the mesh tells.
+        if let Some(other) = self.groups.get(&group.value).filter(|_| !root.has("stages")) {
             let found = format!("= \"{}\" is already the body \"{other}\"", group.value);
             root.reader.note(Diagnostic::error(&group.place, found).remedy("an element belongs to one body"));
             return false;

@@ -43,10 +43,11 @@ const STAGES: &str = "[[supports]]\ngroup = \"bar\"\nfix = \"x\"\nstages = [\"al
                       [[loads]]\ngravity = { x = 1 }\nstages = [\"all\"]\n\
                       [[stages]]\nname = \"all\"\nsolver = { end = 1e-3 }";
 
-/// Stages of which one takes a body out, in place of the solver.
+/// Stages of which one takes a body out and puts another in, in place of the solver.
 const EXCAVATION: &str = "[[bodies]]\nname = \"core\"\nkind = \"solid\"\ngroup = \"core\"\nmaterial = \"steel\"\n\
+                          [[bodies]]\nname = \"lining\"\nkind = \"solid\"\ngroup = \"core\"\nmaterial = \"steel\"\n\
                           [[stages]]\nname = \"before\"\nsolver = { kind = \"static\", end = 1e-3 }\n\
-                          [[stages]]\nname = \"after\"\nexcavate = [\"core\"]\nrelease = 1e-4\nrelease_share = 0.5\n\
+                          [[stages]]\nname = \"after\"\nexcavate = [\"core\"]\ninstall = [\"lining\"]\nrelease = 1e-4\nrelease_share = 0.5\n\
                           solver = { end = 2e-3 }";
 
 /// A gas after another law, with all of its keys.

@@ -28,6 +28,8 @@ pub(crate) struct Cells {
     pub(crate) runs: Vec<Run>,
     /// Thermal strains, where the body expands.
     pub(crate) thermal: Option<Box<ThermalStrain>>,
+    /// Strains at which the cells are free of stress, where the body came in during the run.
+    pub(crate) born: Option<Box<[Sym3]>>,
 }
 
 /// Cells `begin..end` of a block, each with `gradients` gradients.
@@ -61,16 +63,23 @@ fn local_lanes() -> LocalLanes {
 }
 
 impl Cells {
-    /// Strain of a cell that stress belongs to: beyond the thermal one.
+    /// Strain of a cell that stress belongs to: beyond the thermal one, and beyond that at which it came in.
     #[inline(always)]
     pub(crate) fn elastic_strain(&self, cell: usize, strain: Sym3) -> Sym3 {
+        let strain = self.since_birth(cell, strain);
         self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic(cell, strain))
     }
 
     /// The same at the step before.
     #[inline]
     pub(crate) fn elastic_strain_before(&self, cell: usize, strain: Sym3) -> Sym3 {
+        let strain = self.since_birth(cell, strain);
         self.thermal.as_ref().map_or(strain, |thermal| thermal.elastic_before(cell, strain))
+    }
+
+    #[inline(always)]
+    fn since_birth(&self, cell: usize, strain: Sym3) -> Sym3 {
+        self.born.as_ref().map_or(strain, |born| strain - born[cell])
     }
 
     /// Strains of a cell that stress belongs to where a straight way of small displacements begins and where it ends.

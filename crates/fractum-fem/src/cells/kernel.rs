@@ -103,6 +103,35 @@ impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
     }
 }
 
+/// The law of cells that came in during the run: it sees the strain since then.
+pub(crate) struct BornCells<'a, L> {
+    pub(crate) law: &'a mut L,
+    /// Strain of each cell as it came in.
+    pub(crate) born: &'a [Sym3],
+}
+
+impl<L: CellLaw> CellLaw for BornCells<'_, L> {
+    const BY_FOURS: bool = L::BY_FOURS;
+    // Stress has the axes of what the strain has changed by.
+    const IS_COAXIAL: bool = false;
+
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        self.law.scaled_stress(cell, strain - self.born[cell], volume)
+    }
+
+    #[inline(always)]
+    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
+        let since = std::array::from_fn(|k| self.born.get(first + k).map_or(strains[k], |born| strains[k] - *born));
+        self.law.scaled_stresses(first, &since, volumes)
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        self.law.integrity(cell)
+    }
+}
+
 /// Stiffness over the undamaged one above which a cell carries: what is turned inside out below it changes no energy to
 /// speak of.
 const CARRIES: f64 = 0.02;

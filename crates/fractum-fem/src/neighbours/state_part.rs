@@ -55,6 +55,7 @@ pub fn state_beside_parts(solid: &Solid) -> SolidState {
         dissipated: Vec::new(),
         viscous_dissipation: solid.viscous_dissipation,
         viscous: Vec::new(),
+        born: Vec::new(),
     }
 }
 

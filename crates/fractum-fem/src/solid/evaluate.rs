@@ -6,7 +6,7 @@ use crate::body::Kinematics;
 use crate::body::elasticity::{Elasticity, Linear};
 use crate::cells::block::{BLOCK_NODES, Cells, Scratch};
 use crate::cells::cell::Bundle;
-use crate::cells::kernel::{self, ElasticCells, ExpandingCells, Viscous};
+use crate::cells::kernel::{self, BornCells, ElasticCells, ExpandingCells, Viscous};
 use crate::cells::viscosity::ViscousCells;
 use crate::damage::edge::EdgeField;
 use crate::damage::edges_in_step::{Advance, EdgesInStep, FourEdgesInStep};
@@ -163,9 +163,11 @@ impl Block {
         }
     }
 
-    /// Whether its cells neither turn nor expand, and are not viscous: strains that were found once serve the forces too.
+    /// Whether its cells neither turn nor expand, were there from the start, and are not viscous: strains that were found once serve the forces too.
     fn is_plain(&self, model: &BodyModel) -> bool {
-        model.body.kinematics != Kinematics::Corotational && model.viscosity.is_none() && self.cells.thermal.is_none()
+        let Cells { thermal, born, .. } = &self.cells;
+        let is_at_rest = model.body.kinematics != Kinematics::Corotational && model.viscosity.is_none();
+        is_at_rest && thermal.is_none() && born.is_none()
     }
 
     /// Has the elements of a standard body take over the damage of their edges once more, whatever happened to these.
@@ -254,8 +256,8 @@ fn run_elastic<L: Linear>(
     (outcome, law.energy)
 }
 
-/// Runs the cells with the law, beyond their thermal strains where they have some; see [`run_law`]. Returns the work of the
-/// present change of temperatures too [J].
+/// Runs the cells with the law, beyond their thermal strains and those at which they came in where they have some; see [`run_law`]. Returns the work
+/// of the present change of temperatures too [J].
 fn run<L: kernel::CellLaw>(
     model: &BodyModel,
     cells: &Cells,
@@ -264,7 +266,10 @@ fn run<L: kernel::CellLaw>(
     viscous: &mut ViscousCells,
 ) -> (f64, Option<usize>, f64) {
     let Some(thermal) = &cells.thermal else {
-        let (power, inverted) = run_law(model, cells, scratch, law, viscous);
+        let (power, inverted) = match &cells.born {
+            None => run_law(model, cells, scratch, law, viscous),
+            Some(born) => run_law(model, cells, scratch, &mut BornCells { law, born }, viscous),
+        };
         return (power, inverted, 0.0);
     };
     let mut expanding = ExpandingCells { law, thermal, work: 0.0 };
