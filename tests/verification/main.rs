@@ -2,6 +2,7 @@
 
 mod bars;
 mod bedding;
+mod closed_cracks;
 mod crack_pressure;
 mod element;
 mod excavation;

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Regularisation, Solid, Viscosity, facet_area,
-    motion, neighbours,
+    Body, Criterion, CriterionKind, DamageLaw, ElementKind, Formulation, Kinematics, LocalDamping, Regularisation,
+    Solid, Viscosity, facet_area, motion, neighbours,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_rectangle};
@@ -163,6 +163,25 @@ fn breaking() -> Scene {
     scene(solid, supports, Vec::new(), LocalDamping::default())
 }
 
+/// The box, pressed until it fails and its cracks rub.
+fn rubbing() -> Scene {
+    let (nodes, body) = block();
+    let criterion = Criterion::new(CriterionKind::MohrCoulomb, 0.6, 6.0, 0.2);
+    let body =
+        body.smoothed().with_damage(DamageLaw { criterion, friction: Some(0.5), ..DamageLaw::rankine(3e6, 20.0) });
+    let solid = Solid::new(nodes, vec![Body { kinematics: Kinematics::Corotational, ..body }]).unwrap();
+    let supports = ends(&solid, -10.0);
+    scene(solid, supports, Vec::new(), LocalDamping::default())
+}
+
+#[test]
+fn cracks_that_rub_have_the_same_bits_on_any_number_of_ranks() {
+    let single = same_on_ranks(300, rubbing);
+    let [damage, friction] = [single.solid.dissipated_energy(), single.solid.rubbed_energy()];
+    assert!(damage > 1.0 && friction > 1.0, "{damage} J, {friction} J");
+    assert!(single.ledger().residual_max_relative < 1e-3, "{:?}", single.ledger());
+}
+
 #[test]
 fn a_body_that_breaks_has_the_same_bits_on_any_number_of_ranks() {
     let single = same_on_ranks(400, breaking);
@@ -273,7 +292,7 @@ fn the_parts_of_all_ranks_are_the_state_of_a_single_process() {
     };
     let standard = || breaking_by_phase_field(ElementKind::T4, Formulation::Standard);
     let phase_field = || breaking_by_phase_field(ElementKind::T3, Formulation::Smoothed);
-    for made in [&breaking as &(dyn Fn() -> Scene + Sync), &viscous, &standard, &phase_field] {
+    for made in [&breaking as &(dyn Fn() -> Scene + Sync), &rubbing, &viscous, &standard, &phase_field] {
         let mut single = made();
         advance(&mut single, 331);
         for ranks in RANKS {

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use fractum_kernels::damage::EdgeDamage;
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::Formulation;
@@ -135,7 +136,7 @@ fn settle(solid: &mut Solid, dt: f64, cells: &[(u32, u32)], stored: &[f64]) {
         let Solid { blocks, bodies, displacement, velocity, .. } = solid;
         let Block { body, cells, law: BlockLaw::Edges(field), .. } = &mut blocks[block as usize] else { continue };
         let step = Advance { displacement, velocity, dt, kinematics: bodies[*body].body.kinematics };
-        let mut edges = EdgesInStep { field, cells, step, energy: None, dissipated: 0.0 };
+        let mut edges = EdgesInStep { field, cells, step, energy: None, dissipated: 0.0, rubbed: 0.0 };
         edges.settle(cell as usize);
         edges.weaken(cell as usize, stored);
     }
@@ -149,7 +150,7 @@ fn stored_energy(solid: &Solid, (block, cell): (u32, u32)) -> f64 {
     let (block, cell) = (&solid.blocks[block as usize], cell as usize);
     let model = &solid.bodies[block.body];
     let strain = elastic_strain(&block.cells, cell, &solid.displacement, model.body.kinematics);
-    0.5 * block.nominal_stress(cell, &model.elasticity, strain).dot(strain) * block.cells.volume[cell]
+    block.energy_between(cell, &model.elasticity, [strain; 2])
 }
 
 /// Elements of a body that are newly cut through; only edges that broke since the last look matter.
@@ -198,8 +199,8 @@ fn step_energy(solid: &Solid, body: usize, dt: f64, cells: &[(u32, u32)]) -> f64
         let model = &solid.bodies[block.body];
         let dt = own_step(solid, block, dt);
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
-        let stress = block.nominal_stress(cell, &model.elasticity, step.strain_now(&block.cells, cell));
-        0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
+        let strains = [step.strain_before(&block.cells, cell), step.strain_now(&block.cells, cell)];
+        block.energy_between(cell, &model.elasticity, strains)
     };
     let own = (0..).zip(cells).filter(|(_, (block, _))| *block < ALONE).map(|(place, at)| (place, of(at)));
     let mut all = vec![0.0; cells.len()];
@@ -291,16 +292,36 @@ impl Block {
             _ => full * (1.0 - self.damage_of(cell)),
         }
     }
+
+    /// ½ σ : ε⁰ of one cell, with the stress at ε and its damage [J]; the broken share of cracks that rub has the strain beyond its slip.
+    ///
+    /// - `strains`: ε⁰ and ε
+    pub(crate) fn energy_between(&self, cell: usize, elasticity: &Elasticity, strains: [Sym3; 2]) -> f64 {
+        let ([before, strain], volume) = (strains, self.cells.volume[cell]);
+        if let BlockLaw::Edges(field) = &self.law
+            && let Some(friction) = &field.softens.friction
+        {
+            let EdgeDamage { damage, strain: slip, .. } = field.history(cell);
+            let whole = elasticity.stress(strain).dot(before);
+            let broken = friction.stress(strain - slip).dot(before - slip);
+            return 0.5 * ((1.0 - damage) * whole + damage * broken) * volume;
+        }
+        0.5 * self.nominal_stress(cell, elasticity, strain).dot(before) * volume
+    }
 }
 
 impl EdgeField {
     /// Stress of one edge with its damage [Pa], and its damage.
     pub(crate) fn nominal_stress(&self, place: usize, elasticity: &Elasticity, strain: Sym3) -> (Sym3, f64) {
         let full = elasticity.stress(strain);
+        let EdgeDamage { damage, strain: mut slip, share: limit, .. } = self.history(place);
         // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
-        match self.history(place).damage {
-            0.0 => (full, 0.0),
-            damage => (full - self.softens.opening_stress(strain) * damage, damage),
+        match (damage, &self.softens.friction) {
+            (0.0, _) => (full, 0.0),
+            (damage, None) => (full - self.softens.opening_stress(strain) * damage, damage),
+            (damage, Some(friction)) => {
+                (full * (1.0 - damage) + friction.load(strain, &mut slip, limit) * damage, damage)
+            }
         }
     }
 }

@@ -108,6 +108,8 @@ pub enum NotSecant {
     Corotational,
     /// Cracks close.
     Unilateral,
+    /// Closed cracks rub.
+    Friction,
     /// Damage takes time.
     Rate,
     /// Strength grows with the rate of strain.
@@ -123,6 +125,7 @@ impl Solid {
                 _ if zone.is_some_and(|zone| zone.rate.is_some()) => Some(NotSecant::StrainRate),
                 _ if model.body.kinematics == Kinematics::Corotational => Some(NotSecant::Corotational),
                 Some(law) if law.unilateral => Some(NotSecant::Unilateral),
+                Some(law) if law.friction.is_some() => Some(NotSecant::Friction),
                 Some(law) if law.rate_time > 0.0 => Some(NotSecant::Rate),
                 _ => None,
             }

@@ -1,5 +1,7 @@
 //! What changes in a solid during a run, for checkpoints.
 
+use std::ops::Range;
+
 use fractum_kernels::damage::{EdgeDamage, EdgeRate};
 use fractum_math::{Sym3, Vec3};
 use serde::{Deserialize, Serialize};
@@ -9,9 +11,9 @@ use crate::damage::edge::EdgeField;
 use crate::damage::rate::{RateField, RateReport};
 use crate::motion::phase_edges::restore_phase;
 use crate::removal::rebuild_cells_around;
-use crate::solid::Solid;
 use crate::solid::evaluate::{Block, BlockLaw};
 use crate::solid::subcycling::forget_ahead;
+use crate::solid::{BodyModel, Solid};
 
 /// What changes in a body during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -40,7 +42,7 @@ pub struct SolidState {
     pub velocity: Vec<Vec3>,
     /// Bodies in order.
     pub bodies: Vec<BodyState>,
-    /// Energy dissipated by damage, block by block [J].
+    /// Energy dissipated by damage, block by block; behind it, where closed cracks rub, that taken by their friction [J].
     pub dissipated: Vec<f64>,
     /// Energy dissipated by viscosity [J].
     pub viscous_dissipation: f64,
@@ -57,7 +59,7 @@ impl Solid {
             displacement: self.displacement.clone(),
             velocity: self.velocity.clone(),
             bodies: (0..self.bodies.len()).map(|body| body_state(self, body, kept_damage(self, body))).collect(),
-            dissipated: self.blocks.iter().map(|block| block.dissipated).collect(),
+            dissipated: taken_energies(self, 0..self.blocks.len()).map(|(_, energy)| energy).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
             born: self.blocks.iter().map(|b| b.cells.born.as_deref().unwrap_or_default().to_vec()).collect(),
@@ -140,10 +142,24 @@ impl Solid {
         for (block, born) in self.blocks.iter_mut().zip(state.born).filter(|(_, born)| !born.is_empty()) {
             block.cells.born = Some(born.into());
         }
-        for (block, dissipated) in self.blocks.iter_mut().zip(state.dissipated) {
-            block.dissipated = dissipated;
-        }
+        let (damage, friction) = state.dissipated.split_at(state.dissipated.len().min(self.blocks.len()));
+        self.blocks.iter_mut().zip(damage).for_each(|(block, energy)| block.dissipated = *energy);
+        self.blocks.iter_mut().zip(friction).for_each(|(block, energy)| block.rubbed = *energy);
     }
+}
+
+/// What damage, and where closed cracks rub their friction, has taken in some blocks, with its place in the state [J].
+pub(crate) fn taken_energies(solid: &Solid, of: Range<usize>) -> impl Iterator<Item = (u32, f64)> + '_ {
+    let damage = of.clone().map(|index| (index as u32, solid.blocks[index].dissipated));
+    let behind = taken_count(solid) - solid.blocks.len();
+    let friction = of.map(move |index| ((behind + index) as u32, solid.blocks[index].rubbed));
+    damage.chain(friction.filter(move |_| behind > 0))
+}
+
+/// Number of them in all blocks.
+pub(crate) fn taken_count(solid: &Solid) -> usize {
+    let rubs = |model: &BodyModel| model.body.damage.as_ref().is_some_and(|zone| zone.law.friction.is_some());
+    solid.blocks.len() * (1 + usize::from(solid.bodies.iter().any(rubs)))
 }
 
 fn kept_damage(solid: &Solid, body: usize) -> Vec<EdgeDamage> {

@@ -61,7 +61,7 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
     ledger[EnergyKind::External] = books.external;
     ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
-    ledger[EnergyKind::Friction] = books.friction;
+    ledger[EnergyKind::Friction] = books.friction + solid.rubbed_energy() + 0.0;
     ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
     ledger[EnergyKind::TimeStep] = books.time_step;
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();

@@ -245,6 +245,13 @@ pub(super) fn solid_bodies<'a>(
                     "the smoothed formulation, which alone can close cracks; remove one of the two",
                 );
             }
+            if damage.value.law.friction.is_some() && body.formulation == Formulation::Standard {
+                context.error(
+                    &damage.place,
+                    ".friction with the standard formulation",
+                    "the smoothed formulation, whose cracks alone can close and rub; remove one of the two",
+                );
+            }
             body.damage = Some(damage_zone(context, (part, index), &body, &damage.value, numbering, boundary));
         }
         bodies.push(body);
@@ -265,7 +272,8 @@ fn damage_zone(
     let region = if part.body.damage_where.is_some() { Region::Edges(marked) } else { Region::Everywhere };
     // Rock that has failed under pressure goes on bearing it.
     let crushes = damage.law.criterion.kind() != CriterionKind::Rankine && context.case.is_blast();
-    let unilateral = damage.unilateral.unwrap_or(crushes && body.formulation == Formulation::Smoothed);
+    let by_scene = crushes && body.formulation == Formulation::Smoothed && damage.law.friction.is_none();
+    let unilateral = damage.unilateral.unwrap_or(by_scene);
     DamageZone {
         law: DamageLaw { unilateral, ..damage.law.clone() },
         region,

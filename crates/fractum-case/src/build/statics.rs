@@ -29,6 +29,7 @@ pub(super) fn statics(context: &mut Context<'_>, solid: &Solid, numbering: &Numb
         let found = match why {
             NotSecant::Corotational => "kinematics = \"corotational\"",
             NotSecant::Unilateral => "damage.unilateral = true",
+            NotSecant::Friction => "damage.friction",
             NotSecant::Rate => "damage.rate_time",
             NotSecant::StrainRate => "damage.rate",
         };

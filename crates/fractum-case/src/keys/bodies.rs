@@ -61,6 +61,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.damage.regularisation", K::Choice(regularisations), "\"none\"", "Damage as a cohesive phase field, whose cracks do not feel the mesh"),
     key("materials.NAME.damage.length", K::Quantity(D::LENGTH), "twice the element size where cracks are expected", "With regularisation: length b of the phase field, > 0, at most 0.320 (exponential), 0.353 (bilinear, default kink) or 0.455 (linear) E Gf/ft²; a crack is a band about 3 b wide"),
     key("materials.NAME.damage.unilateral", K::Flag, "by the scene", "Stiffness recovers where cracks close; default: true in smoothed bodies in motion under pressure pulses or gas whose criterion has a compressive strength, else false"),
+    key("materials.NAME.damage.friction", K::Quantity(D::NONE), "", "Coefficient of friction of closed cracks, tan φ, from 0 to below 1: cracks open and close, and under pressure they slide. Without it nothing slides, and damage acts on compression too unless `unilateral`; explicit runs of smoothed bodies with local damage only"),
     key("materials.NAME.damage.rate", K::Table, "", "Strength and fracture energy by the rate of strain; explicit runs with local damage only"),
     key("materials.NAME.damage.rate.strength", K::RateCurve, "required", "Factor on tensile_strength: \"fib-2010\", \"fib-2010-first-branch\", an expression of rate, or pairs of rate and factor"),
     key("materials.NAME.damage.rate.compressive_strength", K::RateCurve, "", "Factor on compressive_strength; required where the criterion has this strength"),

@@ -110,6 +110,10 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let scatter = table.table("scatter").map(super::scatter::of_edges);
     let reduce_strength_to_fit = table.flag("reduce_strength_to_fit").or(false);
     let regularisation = regularisation(&table);
+    let friction = optional(&table, "friction", |key| friction(&table, key));
+    if friction.is_some_and(|friction| friction.is_some()) {
+        table.refuse("unilateral", "with friction, whose cracks close");
+    }
     let unilateral = optional(&table, "unilateral", |key| table.flag(key).given());
     let rate_time = table.quantity("rate_time").not_negative().or(0.0);
     let strength_ratio = compressive_strength.zip(tensile_strength).map(|(compressive, tensile)| compressive / tensile);
@@ -126,6 +130,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
             softening: softening?,
             residual,
             unilateral: false,
+            friction: friction?,
             rate_time,
         },
         unilateral: unilateral?,
@@ -134,6 +139,15 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
         regularisation: regularisation?,
         rate: rate.map_or(Some(None), |rate| rate.map(Some))?,
     })
+}
+
+/// Coefficient of friction of closed cracks.
+fn friction(damage: &Table<'_>, key: &'static str) -> Option<f64> {
+    damage
+        .quantity(key)
+        .not_negative()
+        .check(|friction| *friction < 1.0, "below 1, beyond which nothing slides")
+        .given()
 }
 
 /// Compressive over tensile strength where it is not given.
@@ -185,6 +199,7 @@ fn regularisation(damage: &Table<'_>) -> Option<Option<Regularisation>> {
         return Some(None);
     }
     damage.refuse("rate_time", "with a phase field, whose energy it would raise");
+    damage.refuse("friction", "with a phase field: cracks of local damage alone rub");
     damage.refuse("rate", "with a phase field, whose edges have no strength of their own");
     let length = damage.quantity("length").positive().map(Some).or_if_absent(None)?;
     Some(Some(Regularisation { length }))

@@ -116,7 +116,16 @@ impl EdgeField {
         growth
     }
 
-    /// The same at rest, where no body is whose strength grows with the rate of strain.
+    /// Lets an edge whose cracks rub break where its crack is open: elements that closed cracks cut through stay.
+    pub(crate) fn let_open(&mut self, index: usize, strain: Sym3) {
+        let edge = &mut self.state[index];
+        if !edge.broken && self.softens.is_open(edge, strain, self.strength[index]) {
+            edge.broken = true;
+            self.fresh.push(index as u32);
+        }
+    }
+
+    /// [`EdgeField::load`] at rest, where no body is whose strength grows with the rate of strain.
     pub(crate) fn load_at_rest(&mut self, index: usize, seen: Seen) -> f64 {
         self.load(index, seen, Sym3::ZERO, 0.0)
     }

@@ -1,6 +1,6 @@
 //! The edges of a block of smoothed cells in a step: their strains, the growth of their damage, the stress that is left.
 
-use fractum_kernels::damage::EdgeDamage;
+use fractum_kernels::damage::{CrackFriction, EdgeDamage, Rubbed, RubbingStep, Taken};
 use fractum_math::{FOUR, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
@@ -43,6 +43,8 @@ pub(crate) struct EdgesInStep<'a> {
     pub(crate) energy: Option<f64>,
     /// Energy dissipated by damage [J].
     pub(crate) dissipated: f64,
+    /// Energy taken by the friction of closed cracks [J].
+    pub(crate) rubbed: f64,
 }
 
 impl EdgesInStep<'_> {
@@ -58,7 +60,14 @@ impl EdgesInStep<'_> {
         }
         loaded_stress(self, cell, strain, stress);
         // The next forces belong to the same step.
-        self.field.state[cell].strain = self.step.strain_before(self.cells, cell);
+        self.keep_strain_before(cell);
+    }
+
+    /// Keeps the strain of the step before; cracks that rub keep their slip instead.
+    fn keep_strain_before(&mut self, cell: usize) {
+        if self.field.softens.friction.is_none() {
+            self.field.state[cell].strain = self.step.strain_before(self.cells, cell);
+        }
     }
 
     /// Takes from an edge the stiffness with which it would store more than `most` [J]; damage of a phase field has no value
@@ -69,14 +78,20 @@ impl EdgesInStep<'_> {
             return;
         }
         let strain = self.step.strain_now(self.cells, cell);
-        let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
-        let [open, closed] = [opening, full - opening].map(|s| 0.5 * s.dot(strain) * self.cells.volume[cell]);
+        let volume = self.cells.volume[cell];
+        let [open, closed] = if let Some(friction) = &field.softens.friction {
+            let elastic = strain - field.state[cell].strain;
+            let closed = friction.stress(elastic).dot(elastic);
+            [field.softens.hooke.stress(strain).dot(strain) - closed, closed].map(|energy| 0.5 * energy * volume)
+        } else {
+            let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
+            [opening, full - opening].map(|s| 0.5 * s.dot(strain) * volume)
+        };
         let needed = 1.0 - ((most - closed) / open).max(0.0);
         if open > 0.0 && needed > field.state[cell].damage {
-            let before = self.step.strain_before(self.cells, cell);
-            let edge = &mut field.state[cell];
-            (edge.damage, edge.strain) = (needed, before);
+            field.state[cell].damage = needed;
             field.note(cell);
+            self.keep_strain_before(cell);
         }
     }
 
@@ -115,6 +130,33 @@ impl EdgesInStep<'_> {
         }
         nominal * volume
     }
+
+    /// The same where closed cracks rub.
+    fn rub(&mut self, cell: usize, strain: Sym3, stress: Sym3, friction: &CrackFriction) -> Sym3 {
+        let q = self.field.softens.equivalent(&self.field.state[cell], stress, self.step.dt);
+        let EdgesInStep { field, dissipated, rubbed, energy, cells, step } = self;
+        let volume = cells.volume[cell];
+        let EdgeDamage { damage, strain: slip, share: limit, .. } = field.state[cell];
+        let seen = field.softens.see(&field.state[cell], field.strength[cell], stress, q);
+        let growth = field.load(cell, seen, stress, step.dt);
+        if field.state[cell].damage == 0.0 {
+            field.state[cell].share = limit;
+            return self.intact_stress(cell, strain, stress);
+        }
+        let limit = if limit < 1.0 { limit } else { friction.limit(stress.first_principal_value(), q) };
+        let strains = [step.strain_before(cells, cell), strain];
+        let rubbing = RubbingStep { strains, slip, limit, damage };
+        let Rubbed { closed, slip, per_damage, taken } = friction.step(&rubbing, stress);
+        *dissipated += Taken::straight(per_damage).by(growth) * volume;
+        *rubbed += taken * volume;
+        (field.state[cell].strain, field.state[cell].share) = (slip, limit);
+        field.let_open(cell, strain);
+        let broken = field.state[cell].damage;
+        if let Some(energy) = energy {
+            *energy += 0.5 * ((1.0 - broken) * stress.dot(strain) + broken * closed.dot(strain - slip)) * volume;
+        }
+        (stress * (1.0 - broken) + closed * broken) * volume
+    }
 }
 
 impl CellLaw for EdgesInStep<'_> {
@@ -131,6 +173,23 @@ impl CellLaw for EdgesInStep<'_> {
     #[inline(always)]
     fn integrity(&self, cell: usize) -> f64 {
         1.0 - self.field.state[cell].damage
+    }
+}
+
+/// The same where closed cracks rub, whose stress has axes of its own.
+pub(crate) struct RubbingEdges<'a>(pub(crate) EdgesInStep<'a>);
+
+impl CellLaw for RubbingEdges<'_> {
+    const IS_COAXIAL: bool = false;
+
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
+        self.0.scaled_stress(cell, strain, volume)
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        self.0.integrity(cell)
     }
 }
 
@@ -179,6 +238,9 @@ widest! {
 #[inline(always)]
 fn loaded_one(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
     let EdgeField { softens, state, .. } = &*edges.field;
+    if let Some(friction) = softens.friction {
+        return edges.rub(cell, strain, stress, &friction);
+    }
     let q = softens.equivalent(&state[cell], stress, edges.step.dt);
     let closed = softens.closed_stress(strain);
     edges.advance(cell, strain, (stress, closed), q)

@@ -136,7 +136,8 @@ fn see_strains_before(solid: &mut Solid, bodies: &[u32], dt: f64) {
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
         let Block { cells, law, .. } = block;
         match law {
-            BlockLaw::Edges(field) => {
+            // Cracks that rub keep no strain.
+            BlockLaw::Edges(field) if field.softens.friction.is_none() => {
                 let damaged = field.state.iter_mut().enumerate().filter(|(_, edge)| edge.damage > 0.0);
                 damaged.for_each(|(cell, edge)| edge.strain = step.strain_before(cells, cell));
             }
@@ -157,8 +158,8 @@ fn energy_in_step(solid: &Solid, bodies: &[u32], dt: f64) -> f64 {
         let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
         let cells = (0..block.cells.len()).filter(|&cell| block.cells.volume[cell] > 0.0);
         let energy = cells.map(|cell| {
-            let stress = block.nominal_stress(cell, &model.elasticity, step.strain_now(&block.cells, cell));
-            0.5 * stress.dot(step.strain_before(&block.cells, cell)) * block.cells.volume[cell]
+            let strains = [step.strain_before(&block.cells, cell), step.strain_now(&block.cells, cell)];
+            block.energy_between(cell, &model.elasticity, strains)
         });
         energy.sum()
     };

@@ -11,6 +11,7 @@ use crate::solid::evaluate::Block;
 pub(super) struct BlockState {
     energy: Option<f64>,
     dissipated: f64,
+    rubbed: f64,
     fresh: Vec<u32>,
     /// Histories that are no longer those of the start.
     edges: Vec<(u32, EdgeDamage)>,
@@ -26,6 +27,7 @@ impl BlockState {
         BlockState {
             energy: block.energy,
             dissipated: block.dissipated,
+            rubbed: block.rubbed,
             fresh: field.map_or_else(Vec::new, |field| field.fresh.clone()),
             edges: changed.collect(),
             viscous: if viscous { block.viscous.stress.clone() } else { Vec::new() },
@@ -36,7 +38,7 @@ impl BlockState {
         if viscous {
             block.viscous.stress = self.viscous;
         }
-        (block.energy, block.dissipated) = (self.energy, self.dissipated);
+        (block.energy, block.dissipated, block.rubbed) = (self.energy, self.dissipated, self.rubbed);
         if let Some(field) = block.edge_field_mut() {
             field.fresh = self.fresh;
             self.edges.into_iter().for_each(|(index, edge)| field.put(index as usize, edge));

@@ -77,14 +77,14 @@ impl Subdomain {
     /// Gives all ranks the energies of all blocks, which have been summed.
     pub(super) fn exchange_energies(&mut self, blocks: &mut [Block]) {
         let own = self.own();
-        let energies = |block: &Block| [block.energy.unwrap_or(0.0), block.dissipated];
+        let energies = |block: &Block| [block.energy.unwrap_or(0.0), block.dissipated, block.rubbed];
         let mine: Vec<f64> = blocks[own.clone()].iter().flat_map(energies).collect();
-        let counts: Vec<usize> = self.order.first.windows(2).map(|first| 2 * (first[1] - first[0])).collect();
-        let mut all = vec![0.0; 2 * blocks.len()];
+        let counts: Vec<usize> = self.order.first.windows(2).map(|first| 3 * (first[1] - first[0])).collect();
+        let mut all = vec![0.0; 3 * blocks.len()];
         self.exchange.gather(&mine, &counts, &mut all);
         let of_others = blocks.iter_mut().zip(all.as_chunks().0).enumerate().filter(|(index, _)| !own.contains(index));
-        for (_, (block, &[energy, dissipated])) in of_others {
-            (block.energy, block.dissipated) = (Some(energy), dissipated);
+        for (_, (block, &[energy, dissipated, rubbed])) in of_others {
+            (block.energy, block.dissipated, block.rubbed) = (Some(energy), dissipated, rubbed);
         }
     }
 

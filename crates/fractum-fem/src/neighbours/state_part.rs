@@ -9,8 +9,7 @@ use super::subdomain;
 use crate::damage::edge::EdgeField;
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
-use crate::state::body_state;
-use crate::state::{BodyState, SolidState};
+use crate::state::{BodyState, SolidState, body_state, taken_count, taken_energies};
 
 /// What changes in the cells and nodes of a rank. The parts of all ranks have every node and cell once.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,7 +18,7 @@ pub struct SolidPart {
     nodes: Vec<(u32, [Vec3; 2])>,
     /// Edges (body, edge) whose histories are no longer those of the start.
     edges: Vec<(u32, u32, EdgeDamage)>,
-    /// Energy dissipated by damage in each block [J].
+    /// Places and values of [`SolidState::dissipated`] of its blocks.
     dissipated: Vec<(u32, f64)>,
     /// Viscous stress times volume of the cells of each block.
     viscous: Vec<(u32, Vec<Sym3>)>,
@@ -41,7 +40,7 @@ pub fn state_part(solid: &Solid) -> Option<SolidPart> {
     Some(SolidPart {
         nodes: subdomain.sent_nodes().iter().map(|&node| (node, motion(node))).collect(),
         edges: fields.flat_map(|(body, field)| changed(body, field)).collect(),
-        dissipated: blocks().map(|(index, block)| (index, block.dissipated)).collect(),
+        dissipated: taken_energies(solid, own.clone()).collect(),
         viscous: blocks().map(|(index, block)| (index, block.viscous.stress.clone())).collect(),
     })
 }
@@ -67,7 +66,7 @@ pub fn joined(solid: &Solid, beside: SolidState, parts: &[SolidPart]) -> Option<
     let mut state = SolidState {
         displacement: vec![Vec3::zeros(); nodes],
         velocity: vec![Vec3::zeros(); nodes],
-        dissipated: vec![0.0; solid.blocks.len()],
+        dissipated: vec![0.0; taken_count(solid)],
         viscous: vec![Vec::new(); solid.blocks.len()],
         ..beside
     };
@@ -90,7 +89,7 @@ pub fn joined(solid: &Solid, beside: SolidState, parts: &[SolidPart]) -> Option<
         }
         (joined, blocks) = (joined + nodes.len(), blocks + dissipated.len());
     }
-    (joined == nodes && blocks == solid.blocks.len()).then_some(state)
+    (joined == nodes && blocks == state.dissipated.len()).then_some(state)
 }
 
 /// Edge histories of a body in the order of its edges, with their number first, those of all ranks a few at a time.

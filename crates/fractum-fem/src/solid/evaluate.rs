@@ -9,7 +9,7 @@ use crate::cells::cell::Bundle;
 use crate::cells::kernel::{self, BornCells, ElasticCells, ExpandingCells, Viscous};
 use crate::cells::viscosity::ViscousCells;
 use crate::damage::edge::EdgeField;
-use crate::damage::edges_in_step::{Advance, EdgesInStep, FourEdgesInStep};
+use crate::damage::edges_in_step::{Advance, EdgesInStep, FourEdgesInStep, RubbingEdges};
 use crate::damage::standard::{self, StandardCells};
 use crate::solid::body_model::BodyModel;
 
@@ -36,6 +36,8 @@ pub(crate) struct Block {
     pub(crate) energy: Option<f64>,
     /// Energy dissipated by damage so far [J].
     pub(crate) dissipated: f64,
+    /// Energy taken by the friction of closed cracks so far [J].
+    pub(crate) rubbed: f64,
     /// Its part of the step; none where it is not evaluated here, nor its forces needed.
     pub(crate) scratch: Option<Scratch>,
     /// Power of the viscous stress in the last step [W].
@@ -63,6 +65,7 @@ impl Block {
             law,
             energy: None,
             dissipated: 0.0,
+            rubbed: 0.0,
             scratch: None,
             viscous_power: 0.0,
             viscous,
@@ -117,8 +120,15 @@ impl Block {
                 field.rate.iter_mut().for_each(|rate| rate.pass(dt));
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
                 let by_fours = field.softens.is_unilateral() || field.is_mostly_damaged();
-                let mut law = EdgesInStep { field, cells, step, energy: start, dissipated: self.dissipated };
-                let outcome = if by_fours {
+                let rubs = field.softens.friction.is_some();
+                let [dissipated, rubbed] = [self.dissipated, self.rubbed];
+                let mut law = EdgesInStep { field, cells, step, energy: start, dissipated, rubbed };
+                let outcome = if rubs {
+                    let mut rubbing = RubbingEdges(law);
+                    let outcome = run(model, cells, scratch, &mut rubbing, viscous);
+                    law = rubbing.0;
+                    outcome
+                } else if by_fours {
                     let mut fours = FourEdgesInStep(law);
                     let outcome = run(model, cells, scratch, &mut fours, viscous);
                     law = fours.0;
@@ -126,7 +136,7 @@ impl Block {
                 } else {
                     run(model, cells, scratch, &mut law, viscous)
                 };
-                (self.energy, self.dissipated) = (law.energy, law.dissipated);
+                (self.energy, self.dissipated, self.rubbed) = (law.energy, law.dissipated, law.rubbed);
                 outcome
             }
             BlockLaw::Standard(law) => {

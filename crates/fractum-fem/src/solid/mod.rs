@@ -215,7 +215,7 @@ impl Solid {
 
     /// Elastic energy at the last measured step [J].
     pub fn elastic_energy(&self) -> f64 {
-        if let Some([elastic, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+        if let Some([elastic, ..]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
             return elastic;
         }
         self.blocks.iter().map(|block| block.energy.unwrap_or(0.0)).sum()
@@ -223,10 +223,18 @@ impl Solid {
 
     /// Energy dissipated by damage so far [J].
     pub fn dissipated_energy(&self) -> f64 {
-        if let Some([_, dissipated]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+        if let Some([_, dissipated, _]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
             return dissipated;
         }
         self.blocks.iter().map(|block| block.dissipated).sum()
+    }
+
+    /// Energy taken by the friction of closed cracks so far [J].
+    pub fn rubbed_energy(&self) -> f64 {
+        if let Some([.., rubbed]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
+            return rubbed;
+        }
+        self.blocks.iter().map(|block| block.rubbed).sum()
     }
 
     /// Energy dissipated by viscosity so far [J].

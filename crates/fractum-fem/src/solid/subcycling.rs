@@ -19,8 +19,8 @@ pub(crate) struct Subcycling {
     pub(crate) near: Vec<usize>,
     /// The forces of these blocks are those of tⁿ already.
     pub(crate) is_ahead: bool,
-    /// While they are: elastic energy and energy dissipated by damage at the last step of all cells [J].
-    pub(crate) energies: [f64; 2],
+    /// While they are: elastic energy and what damage and friction have taken at the last step of all cells [J].
+    pub(crate) energies: [f64; 3],
     /// Short steps in the long ones before and after tⁿ.
     pub(crate) parts: [u32; 2],
     /// Internal forces at tⁿ, then what other forces there are; on nodes with short steps these act until tⁿ⁺¹ [N].
@@ -41,8 +41,8 @@ impl Subcycling {
         self.is_ahead && self.near.binary_search(&block).is_ok()
     }
 
-    /// Elastic energy and energy dissipated by damage at the last step of all cells, while some are ahead [J].
-    pub(crate) fn energies(&self) -> Option<[f64; 2]> {
+    /// Elastic energy and what damage and friction have taken at the last step of all cells, while some are ahead [J].
+    pub(crate) fn energies(&self) -> Option<[f64; 3]> {
         self.is_ahead.then_some(self.energies)
     }
 

@@ -1,18 +1,19 @@
-use crate::Vec3;
+use core::ops::Mul;
 
-/// Coulomb's slip: what is left of a trial force or stretch, brought back to the cone along its own direction (return
-/// mapping; Simo and Hughes, *Computational Inelasticity* (1998), chapter 1). All friction of contacts goes through here.
+/// Coulomb's slip: what is left of a trial force, stretch or strain, brought back to the cone along its own direction (return
+/// mapping; Simo and Hughes, *Computational Inelasticity* (1998), chapter 1). All friction goes through here.
 ///
-/// - `size`: the trial force [N], or moment [N m]
-/// - `limit`: the largest one, μ times the normal force, ≥ 0
+/// - `size`: the trial force [N], moment [N m] or stress [Pa]
+/// - `limit`: the largest one, μ times the normal force or stress, ≥ 0
 #[inline]
-pub fn slip_to_cone(trial: Vec3, size: f64, limit: f64) -> Vec3 {
+pub fn slip_to_cone<T: Mul<f64, Output = T>>(trial: T, size: f64, limit: f64) -> T {
     if size > limit { trial * (limit / size) } else { trial }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Vec3;
 
     #[test]
     fn what_sticks_stays_and_what_slips_ends_on_the_cone() {

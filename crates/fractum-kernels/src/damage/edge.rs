@@ -2,12 +2,15 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::damage::{Restraint, Seen, Taken};
+use crate::damage::{CrackFriction, Restraint, Seen, Taken};
 use crate::material::{Criterion, DamageLaw, Hooke, Softening, equivalent_stresses};
 use crate::{FOUR, Lane, Sym3, negative_parts};
 
 /// An equivalent stress beyond all that occur [Pa], of which the square is a number.
 pub const ABOVE_ALL: f64 = 1e100;
+
+/// Volume strain over κ/E' from which on a crack that rubs counts as open: parts of a crack that slides open and close.
+const OPENED: f64 = 0.25;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -18,9 +21,10 @@ pub struct EdgeDamage {
     pub damage: f64,
     /// Sum of the lateral principal stresses at the onset of damage [Pa]; infinite before.
     pub lateral: f64,
-    /// Part of the largest effective principal stress that belonged to the opening when κ last grew.
+    /// Part of the largest effective principal stress that belonged to the opening when κ last grew; where cracks rub, what their friction allows
+    /// ([`CrackFriction::limit`]), 1 before the onset.
     pub share: f64,
-    /// Strain at the last step, kept from the onset of damage on.
+    /// Strain at the last step, kept from the onset of damage on; where cracks rub, the slip that friction has taken since then.
     pub strain: Sym3,
     /// Whether the residual stress ratio has fallen to the limit.
     pub broken: bool,
@@ -60,6 +64,8 @@ pub struct Softens {
     fracture_energy: f64,
     residual: f64,
     unilateral: bool,
+    /// Friction of closed cracks, where they rub.
+    pub friction: Option<CrackFriction>,
     rate_time: f64,
     /// Damage comes from a phase field; histories only keep what it is driven by.
     pub regularised: bool,
@@ -68,7 +74,7 @@ pub struct Softens {
 impl Softens {
     /// What a law gives in a body.
     pub fn new(law: &DamageLaw, hooke: Hooke, restraint: Restraint) -> Self {
-        let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, rate_time, .. } = law;
+        let &DamageLaw { criterion, softening, fracture_energy, residual, unilateral, friction, rate_time, .. } = law;
         Softens {
             criterion,
             hooke,
@@ -77,6 +83,7 @@ impl Softens {
             fracture_energy,
             residual,
             unilateral,
+            friction: friction.map(|coefficient| CrackFriction::new(coefficient, &hooke)),
             rate_time,
             regularised: restraint.is_spread,
         }
@@ -203,8 +210,15 @@ impl Softens {
         let chi = self.residual_ratio(edge.kappa, strength, length);
         let before = edge.damage;
         edge.damage = before.max(1.0 - seen.share * (strength / edge.kappa * chi));
-        edge.broken = edge.broken || chi <= self.residual;
+        edge.broken = edge.broken || chi <= self.residual && self.friction.is_none();
         edge.damage - before
+    }
+
+    /// Whether an edge whose cracks rub is now broken: nothing to speak of is left of its strength, and its crack is open by a part of what broke it.
+    #[inline]
+    pub fn is_open(&self, edge: &EdgeDamage, strain: Sym3, strength: f64) -> bool {
+        let is_cut = (1.0 - edge.damage) * edge.kappa <= self.residual * strength;
+        is_cut && strain.trace() * self.restraint.modulus >= OPENED * edge.kappa
     }
 
     /// Raises the damage of an edge to that of the phase field; returns the growth.

@@ -19,6 +19,8 @@ pub struct DamageLaw {
     pub residual: f64,
     /// Damage acts on the tensile part of the strain only: closed cracks carry compression.
     pub unilateral: bool,
+    /// Coefficient of friction of closed cracks, 0 to below 1; none where damage acts on compression as on tension, or cracks close `unilateral`.
+    pub friction: Option<f64>,
     /// Relaxation time of the damage driving force [s]; 0 is rate-independent.
     pub rate_time: f64,
 }
@@ -35,6 +37,7 @@ impl DamageLaw {
             softening: Softening::Exponential,
             residual: 0.02,
             unilateral: false,
+            friction: None,
             rate_time: 0.0,
         }
     }

@@ -1,6 +1,6 @@
 //! Properties of an edge that is damaged on any way through strains.
 
-use fractum_kernels::damage::{EdgeDamage, Restraint, Softens};
+use fractum_kernels::damage::{EdgeDamage, Restraint, RubbingStep, Softens};
 use fractum_kernels::material::{Criterion, CriterionKind, DamageLaw, Elastic, Hooke, Plane, Softening};
 use fractum_kernels::{Mat3, Sym3};
 
@@ -15,7 +15,7 @@ struct Edge {
 }
 
 /// Any criterion, body and size that a case may give.
-fn edge(draw: &mut Draw, softening: Softening, unilateral: bool) -> Edge {
+fn edge(draw: &mut Draw, softening: Softening, unilateral: bool, friction: Option<f64>) -> Edge {
     let kind = draw.one_of(&[
         CriterionKind::Rankine,
         CriterionKind::MohrCoulomb,
@@ -34,7 +34,7 @@ fn edge(draw: &mut Draw, softening: Softening, unilateral: bool) -> Edge {
     let energy = draw.over_decades(1e-1, 1e5);
     let length = draw.between(0.001, 0.9) * softening.largest_length(restraint.modulus, strength, energy);
     let criterion = Criterion::new(kind, angle, strength_ratio, elastic.poisson_ratio);
-    let law = DamageLaw { criterion, softening, unilateral, ..DamageLaw::rankine(strength, energy) };
+    let law = DamageLaw { criterion, softening, unilateral, friction, ..DamageLaw::rankine(strength, energy) };
     let softens = Softens::new(&law, Hooke::new(&elastic, plane), restraint);
     Edge { softens, strength, length, in_plane: plane.is_some() }
 }
@@ -67,7 +67,7 @@ impl Edge {
 /// On a way to and fro: damage only grows, no edge mends, what damage takes is what the forces do not give back and never below zero,
 /// what is stored is never below zero, and turned axes change nothing.
 pub(crate) fn way(draw: &mut Draw, curve: Softening, unilateral: bool) -> Held {
-    let law = edge(draw, curve, unilateral);
+    let law = edge(draw, curve, unilateral, None);
     let words = format!("{:?}, {:?}", law.softens.criterion.kind(), law.softens.restraint);
     let limit = law.strength / law.softens.restraint.modulus * draw.over_decades(0.5, 20.0);
     let mut ends = || -> [f64; 6] { std::array::from_fn(|_| limit * draw.between(-1.0, 1.0)) };
@@ -102,4 +102,72 @@ pub(crate) fn way(draw: &mut Draw, curve: Softening, unilateral: bool) -> Held {
         last = (to, nominal);
     }
     Ok(())
+}
+
+/// An edge that is damaged, closes, slides and opens again on any way: the broken share bears no more than friction allows and nothing where it is open, what the step takes is
+/// what the forces do not give back, damage and friction take and do not give, and turned axes change nothing.
+pub(crate) fn rubbing(draw: &mut Draw) -> Held {
+    let any = draw.between(0.0, 0.999);
+    let coefficient = draw.one_of(&[0.0, any]);
+    let curve = draw.one_of(&[Softening::Exponential, Softening::Linear]);
+    let law = edge(draw, curve, false, Some(coefficient));
+    let (softens, friction) = (&law.softens, law.softens.friction.expect("it was given"));
+    let crushed = draw.one_of(&[false, true]);
+    let limit = friction.limit(if crushed { 0.0 } else { 1.0 }, 1.0);
+    let words = format!("{:?}, {:?}", softens.criterion.kind(), friction);
+    let far = law.strength / softens.restraint.modulus * draw.over_decades(0.5, 20.0);
+    let mut ends = || -> [f64; 6] { std::array::from_fn(|_| far * draw.between(-1.0, 1.0)) };
+    let (one, two) = (ends(), ends());
+    let strain = |at: f64| {
+        let (a, b) = ((7.0 * at).sin() * at, (17.0 * at).sin());
+        let [xx, yy, zz, xy, yz, zx] = std::array::from_fn(|k| one[k] * a + two[k] * b);
+        if law.in_plane { Sym3([xx, yy, 0.0, xy, 0.0, 0.0]) } else { Sym3([xx, yy, zz, xy, yz, zx]) }
+    };
+    let turn: Mat3 = if law.in_plane { draw.turn_in_plane() } else { draw.turn() };
+    let turned = |tensor: Sym3| Sym3::symmetric_part(&(turn * tensor.to_matrix() * turn.transpose()));
+    let is_flat = softens.hooke.zz == 0.0;
+    let (mut edge, mut slip, mut turned_slip) = (EdgeDamage::intact(law.strength), Sym3::ZERO, Sym3::ZERO);
+    let (mut from, mut stress, mut stored) = (Sym3::ZERO, Sym3::ZERO, 0.0);
+    let (mut rubbed_away, mut most) = (0.0, 0.0f64);
+    let steps = 300;
+    for at in (1..=steps).map(|step| f64::from(step) / f64::from(steps)) {
+        let to = strain(at);
+        let (full, damage) = (softens.hooke.stress(to), edge.damage);
+        let seen = softens.see(&edge, law.strength, full, softens.equivalent(&edge, full, 0.0));
+        let growth = softens.load(&mut edge, seen, law.strength, law.length, 0.0);
+        let (mut nominal, mut takes, mut held) = (full, [0.0; 2], Sym3::ZERO);
+        if edge.damage > 0.0 {
+            let step = friction.step(&RubbingStep { strains: [from, to], slip, limit, damage }, full);
+            let closed = step.closed;
+            friction.load(turned(to), &mut turned_slip, limit);
+            let off = turned(step.slip) - turned_slip;
+            let size = to.dot(to).sqrt() + far;
+            hold(off.dot(off).sqrt() <= 1e-5 * size, || {
+                format!("{words}: slips by {off:?} otherwise where axes are turned")
+            })?;
+            hold(step.slip.trace().abs() <= 1e-9 * size, || {
+                format!("{words}: slip opens it by {}", step.slip.trace())
+            })?;
+            let [first, _, last] = closed.principal_values();
+            let flat = [closed.0[0] + closed.0[1], (closed.0[0] - closed.0[1]).hypot(2.0 * closed.0[3])];
+            let [sum, difference] = if is_flat { flat } else { [first + last, first - last] };
+            let scale = softens.hooke.mu * size;
+            hold(difference <= -limit * sum + 1e-6 * scale, || format!("{words}: bears {difference} under {sum}"))?;
+            let is_open = to.trace() >= 0.0;
+            hold(!is_open || closed.dot(closed).sqrt() <= 1e-9 * scale, || format!("{words}: open, bears {closed:?}"))?;
+            (slip, held) = (step.slip, closed);
+            nominal = full * (1.0 - edge.damage) + closed * edge.damage;
+            takes = [step.per_damage * growth, step.taken];
+        }
+        let scale = full.dot(to) + softens.hooke.stress(from).dot(from) + softens.hooke.mu * far * far;
+        let stores = 0.5 * ((1.0 - edge.damage) * full.dot(to) + edge.damage * held.dot(to - slip));
+        let missing = 0.5 * (stress + nominal).dot(to - from) + stored - stores;
+        let sum = takes[0] + takes[1];
+        hold((sum - missing).abs() <= 1e-9 * scale, || format!("{words}: takes {takes:?} of {missing} at {at}"))?;
+        hold(stores >= 0.0, || format!("{words}: stores {stores}"))?;
+        rubbed_away += takes[1];
+        most = most.max(scale);
+        (from, stress, stored) = (to, nominal, stores);
+    }
+    hold(rubbed_away >= -1e-3 * most, || format!("{words}: friction gives {rubbed_away} of {most}"))
 }

@@ -98,6 +98,7 @@ const LAWS: &[Row] = &[
             damage::way(draw, curve, true)
         },
     },
+    Row { law: "edge whose closed crack rubs", holds: damage::rubbing },
     Row {
         law: "bond, cohesive beam",
         holds: |draw| {

@@ -5,7 +5,7 @@ use fractum_calibrate::strength::Pulling;
 use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
-use fractum_fem::{ElementKind, Formulation, Kinematics, Plane, motion, neighbours};
+use fractum_fem::{DamageLaw, ElementKind, Formulation, Kinematics, Plane, motion, neighbours};
 use fractum_math::elementary::cbrt;
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_output::number::quantity;
@@ -207,8 +207,13 @@ impl Plan {
             Kinematics::Auto if matches!(case.solver.kind, SolverKind::Static | SolverKind::Modes) => "small strains",
             Kinematics::Auto => "small strains until it turns",
         };
-        let closing = body.damage.as_ref().is_some_and(|zone| zone.law.unilateral);
-        let closing = if closing { ", cracks close under pressure" } else { "" };
+        let closing = match body.damage.as_ref().map(|zone| &zone.law) {
+            Some(law) if law.unilateral => ", cracks close under pressure".to_owned(),
+            Some(DamageLaw { friction: Some(friction), .. }) => {
+                format!(", cracks close under pressure and rub with a coefficient of {friction}")
+            }
+            _ => String::new(),
+        };
         let (count, volume) = (neighbours::element_count(&scene.solid, index), neighbours::volume(&scene.solid, index));
         self.add(
             "body",

@@ -160,7 +160,7 @@ pub fn advance_in_parts(
     for (fine, [dt_before, dt_after]) in [(false, long), (true, [before, after])] {
         work += prescribe(solid, Prescribe::Impose { fine, since: 0.0, dt_before, dt_after });
     }
-    own.energies = [solid.elastic_energy(), solid.dissipated_energy()];
+    own.energies = [solid.elastic_energy(), solid.dissipated_energy(), solid.rubbed_energy()];
     own.look_ahead(solid, &step);
     let step = WholeStep { measure: false, ..step };
     for part in 1..own.parts[1] {

@@ -72,7 +72,7 @@ fn link(solid: &mut Solid, fine_elements: Vec<Vec<bool>>) -> Result<(), SolidErr
         runs,
         near,
         is_ahead: false,
-        energies: [0.0; 2],
+        energies: [0.0; 3],
         parts: [1; 2],
         outer: vec![Vec3::zeros(); all],
         has_outer: false,
