@@ -3,7 +3,7 @@
 python3 meshes/closed_cracks.py                              writes the files in closed-cracks/
 python3 meshes/closed_cracks.py column 16 32 3.125e-3 7 x.msh        16 x 32 cells of 3.125 mm, nodes moved by the seed 7
 python3 meshes/closed_cracks.py block 6 12 8e-3 7 x.msh              6 x 6 x 12 cells of 8 mm
-python3 meshes/closed_cracks.py plate 48 8 1e-3 7 x.msh              96 x 96 cells of 1 mm, the crack along 16 diagonals
+python3 meshes/closed_cracks.py plate 20 10 4e-4 7 x.msh             a crack along 40 diagonals of cells of 0.4 mm, as many cells as large around its tips
 """
 
 import random
@@ -44,16 +44,16 @@ def write(path, points, groups):
     Path(path).write_text("\n".join(lines) + "\n")
 
 
-def square(nx, ny, size, seed, held=lambda i, j: False, corner=(0.0, 0.0), diagonal=lambda i, j: (i + j) % 2):
-    """Points and triangles; nodes on the rim and those held stay in their place."""
+def square(xs, ys, seed, held=lambda i, j: False, diagonal=lambda i, j: (i + j) % 2):
+    """Points and triangles between lines; nodes on the rim and those held stay in their place."""
     noise = random.Random(seed)
+    nx, ny = len(xs) - 1, len(ys) - 1
     node = lambda i, j: 1 + j * (nx + 1) + i
+    moved = lambda at, k: at[k] + noise.uniform(-JITTER, JITTER) * min(at[k] - at[k - 1], at[k + 1] - at[k])
     points = []
     for j, i in product(range(ny + 1), range(nx + 1)):
-        dx, dy = (noise.uniform(-JITTER, JITTER) for _ in range(2))
-        if not (0 < i < nx and 0 < j < ny) or held(i, j):
-            dx = dy = 0.0
-        points.append((corner[0] + size * (i + dx), corner[1] + size * (j + dy), 0.0))
+        stays = not (0 < i < nx and 0 < j < ny) or held(i, j)
+        points.append((xs[i], ys[j], 0.0) if stays else (moved(xs, i), moved(ys, j), 0.0))
     triangles = []
     for j, i in product(range(ny), range(nx)):
         a, b, c, d = node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)
@@ -62,7 +62,7 @@ def square(nx, ny, size, seed, held=lambda i, j: False, corner=(0.0, 0.0), diago
 
 
 def column(path, nx, ny, size, seed):
-    points, triangles, node = square(nx, ny, size, seed)
+    points, triangles, node = square([size * i for i in range(nx + 1)], [size * j for j in range(ny + 1)], seed)
     row = lambda j: [(node(i, j), node(i + 1, j)) for i in range(nx)]
     side = lambda i: [(node(i, j), node(i, j + 1)) for j in range(ny)]
     groups = {"rock": (2, triangles), "bottom": (1, row(0)), "top": (1, row(ny)), "left": (1, side(0)), "right": (1, side(nx))}
@@ -100,12 +100,18 @@ def block(path, n, nz, size, seed):
     write(path, points, {"rock": (3, tetrahedra), "bottom": (2, bottom), "top": (2, top), "sides": (2, sides)})
 
 
-def plate(path, half, crack, size, seed):
-    """A square of 2 half x 2 half cells around the origin; the crack runs along the diagonals from -crack to crack cells."""
-    n = 2 * half
+def plate(path, crack, around, size, seed):
+    """A square of 80 mm around the origin; the crack runs along the diagonals from -crack to crack cells, and cells grow from `around` cells beyond it."""
+    core, outer, step = [size * k for k in range(crack + around + 1)], [0.0], size
+    while core[-1] + outer[-1] < 0.04 - 1e-9:
+        step *= 1.2
+        outer.append(outer[-1] + step)
+    lines = core + [core[-1] + x * (0.04 - core[-1]) / outer[-1] for x in outer[1:]]
+    lines = [-x for x in reversed(lines[1:])] + lines
+    n, half = len(lines) - 1, len(lines) // 2
     on = lambda i, j: i == j and abs(i - half) <= crack
     along = lambda i, j: i == j or (i + j) % 2
-    points, triangles, node = square(n, n, size, seed, on, (-half * size, -half * size), along)
+    points, triangles, node = square(lines, lines, seed, on, along)
     row = lambda j: [(node(i, j), node(i + 1, j)) for i in range(n)]
     side = lambda i: [(node(i, j), node(i, j + 1)) for j in range(n)]
     slit = [(node(half + k, half + k), node(half + k + 1, half + k + 1)) for k in range(-crack, crack)]
@@ -122,7 +128,7 @@ def main(arguments):
     folder = Path(__file__).with_name("closed-cracks")
     folder.mkdir(exist_ok=True)
     column(folder / "column.msh", 16, 32, 3.125e-3, 1)
-    plate(folder / "plate.msh", 40, 8, 1e-3, 1)
+    plate(folder / "plate.msh", 20, 10, 4e-4, 1)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ use crate::material::Hooke;
 ///
 /// - A crack that began in tension is a band of one element that slides along itself. Strain rates there are those of simple shear, the axes of stress turn until
 ///   they are those of the slip, and the traction on the band is τ = k σ: Coulomb's friction with k = f, whatever the direction of the crack in the mesh. No normal is
-///   kept, so that a band that runs zigzag through a mesh does not lock.
+///   kept. A band that runs zigzag through a mesh is rough, and bears more.
 /// - What failed by shear under pressure is crushed rock without cohesion, whose strength is Mohr-Coulomb's: k = sin φ, tan φ = f.
 #[derive(Clone, Copy, Debug)]
 pub struct CrackFriction {
