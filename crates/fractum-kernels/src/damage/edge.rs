@@ -9,8 +9,8 @@ use crate::{FOUR, Lane, Sym3, negative_parts};
 /// An equivalent stress beyond all that occur [Pa], of which the square is a number.
 pub const ABOVE_ALL: f64 = 1e100;
 
-/// Volume strain over κ/E' from which on a crack that rubs counts as open: parts of a crack that slides open and close.
-const OPENED: f64 = 0.25;
+/// Volume strain over κ/E' from which on a crack that rubs counts as open: 1 where a crack opens straight. Parts of a crack that slides open and close.
+const OPENED: f64 = 0.5;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
