@@ -1,4 +1,4 @@
-"""Plane blocks with lines inside, for cases/interfaces. Writes MSH 2.2 as text; needs no gmsh.
+"""Plane blocks with lines inside, for cases/interfaces and cases/liquid. Writes MSH 2.2 as text; needs no gmsh.
 
 python3 meshes/interfaces.py
 """
@@ -77,6 +77,17 @@ def spaced(*parts):
     return places
 
 
+def growing(size, even, end, ratio):
+    """Places from 0 to `end`: steps of one size up to `even`, then growing by a ratio."""
+    places, step = [0.0], size
+    while places[-1] < end - 1e-9:
+        if places[-1] > even - 1e-9:
+            step *= ratio
+        last = places[-1]
+        places.append(end if last + 1.5 * step > end else last + step)
+    return places
+
+
 def main():
     FOLDER.mkdir(exist_ok=True)
     # Double cantilever: 120 x 2 x 6 mm, bonded from 40 mm on.
@@ -132,6 +143,20 @@ def main():
         },
         jitter=0.25,
         turn=27,
+    )
+    # Half of a plane with a crack that liquid drives along y = 0: elements of 5 cm up to 3.2 m, then growing.
+    across = growing(0.05, 0.2, 40.0, 1.2)
+    rectangle(
+        "liquid",
+        growing(0.05, 3.2, 40.0, 1.2),
+        [-y for y in reversed(across[1:])] + across,
+        {"lower": lambda x, y: y < 0, "upper": lambda x, y: y > 0},
+        {
+            "crack": lambda x, y: near(y, 0.0),
+            "side": lambda x, y: near(x, 0.0),
+            "top": lambda x, y: near(y, 40.0),
+            "bottom": lambda x, y: near(y, -40.0),
+        },
     )
 
 

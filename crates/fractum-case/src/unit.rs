@@ -70,6 +70,12 @@ impl Dimension {
     pub const SPECIFIC_VOLUME: Self = dimension(-1, 3, 0);
     /// Dynamic viscosity [Pa s].
     pub const VISCOSITY: Self = dimension(1, -1, -1);
+    /// Compressibility [1/Pa].
+    pub const COMPRESSIBILITY: Self = dimension(-1, 1, 2);
+    /// Volume per time [m³/s].
+    pub const VOLUME_RATE: Self = dimension(0, 3, -1);
+    /// Length per root of time [m/√s].
+    pub const LEAK_OFF: Self = Dimension { halves: [0, 2, -1, 0] };
     /// Mass flow [kg/s].
     pub const MASS_RATE: Self = dimension(1, 0, -1);
     /// Linear momentum [kg m/s].
@@ -188,6 +194,9 @@ static KNOWN: &[Known] = &[
     known(Dimension::HEAT_TRANSFER, "W/(m^2 K)", "a coefficient of heat transfer", "50 W/(m^2 K)"),
     known(Dimension::EXPANSION, "1/K", "a coefficient of thermal expansion", "1e-5 1/K"),
     known(Dimension::SPECIFIC_VOLUME, "m^3/kg", "a volume per mass", "1 L/kg"),
+    known(Dimension::COMPRESSIBILITY, "1/Pa", "a compressibility", "4.5e-10 1/Pa"),
+    known(Dimension::VOLUME_RATE, "m^3/s", "a volume per time", "10 L/s"),
+    known(Dimension::LEAK_OFF, "m/s^0.5", "a leak-off", "1e-5 m/s^0.5"),
     known(Dimension::VISCOSITY, "Pa s", "a viscosity", "5e-5 Pa s"),
     known(Dimension::MASS_RATE, "kg/s", "a mass flow", "0.1 kg/s"),
     known(Dimension::FRACTURE_ENERGY, "J/m^2", "an energy per area", "100 J/m^2"),

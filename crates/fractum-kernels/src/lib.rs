@@ -22,6 +22,7 @@ mod exact;
 pub mod interface;
 mod lane;
 pub mod lanes;
+pub mod liquid;
 pub mod material;
 mod negative_part;
 mod number;

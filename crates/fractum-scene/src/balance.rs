@@ -23,7 +23,7 @@ const GAS_ROUND_OFF: f64 = 1e-12;
 
 /// The ledger of a state of equilibrium.
 pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
-    let Scene { ledger, solid, books, optional: Optional { interfaces, .. }, .. } = scene;
+    let Scene { ledger, solid, books, optional: Optional { interfaces, liquid, .. }, .. } = scene;
     ledger[EnergyKind::Elastic] = solid.elastic_energy();
     ledger[EnergyKind::Damage] = solid.dissipated_energy();
     ledger[EnergyKind::External] = books.external;
@@ -33,6 +33,13 @@ pub(crate) fn book_equilibrium(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::TimeStep] = books.time_step;
     ledger[EnergyKind::Left] = books.left;
     book_interfaces(ledger, books, interfaces);
+    if let Some(liquid) = liquid {
+        let [supplied, stored, viscous, lost] = liquid.energies();
+        ledger[EnergyKind::LiquidSupplied] = supplied;
+        ledger[EnergyKind::Liquid] = stored;
+        ledger[EnergyKind::LiquidFlow] = viscous;
+        ledger[EnergyKind::LiquidLeaked] = lost;
+    }
     ledger.update_maxima();
     if ledger.residual().is_finite() {
         return Ok(());

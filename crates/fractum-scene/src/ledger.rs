@@ -50,6 +50,14 @@ pub enum EnergyKind {
     Gas,
     /// Enthalpy of the gas that has leaked to the outside.
     GasLeaked,
+    /// Work of the pumps on the liquid that they put in.
+    LiquidSupplied,
+    /// Energy stored in liquid by its compression.
+    Liquid,
+    /// Energy taken by the viscous flow of liquid, its entry into the dry part of cracks included.
+    LiquidFlow,
+    /// Energy of the liquid that walls have taken.
+    LiquidLeaked,
     /// Energy of pieces that have left the domain of the run, and of bodies that a stage took out.
     Left,
 }
@@ -122,6 +130,10 @@ impl EnergyKind {
         entry(EnergyKind::GasSupplied, "gas_supplied", "Gas put in", EnergyRole::Supplied),
         entry(EnergyKind::Gas, "gas", "Gas", EnergyRole::Stored),
         entry(EnergyKind::GasLeaked, "gas_leaked", "Gas leaked", EnergyRole::Spent),
+        entry(EnergyKind::LiquidSupplied, "liquid_supplied", "Liquid put in", EnergyRole::Supplied),
+        entry(EnergyKind::Liquid, "liquid", "Liquid", EnergyRole::Stored),
+        entry(EnergyKind::LiquidFlow, "liquid_flow", "Viscous flow of liquid", EnergyRole::Spent),
+        entry(EnergyKind::LiquidLeaked, "liquid_leaked", "Liquid leaked", EnergyRole::Spent),
         entry(EnergyKind::Left, "left", "Left the run", EnergyRole::Spent),
     ];
 
@@ -262,6 +274,7 @@ impl Ledger {
     /// Takes the present values into the running maxima.
     pub(crate) fn update_maxima(&mut self) {
         self.scale = self.scale.max(self.initial - self.in_situ).max(self[EnergyKind::External].abs());
+        self.scale = self.scale.max(self[EnergyKind::LiquidSupplied].abs());
         self.residual_max_relative = self.residual_max_relative.max(self.relative_residual());
     }
 }

@@ -25,6 +25,7 @@ mod heat;
 mod interfaces;
 mod leave;
 mod ledger;
+mod liquid;
 mod measure;
 mod modes;
 pub mod ranks;
@@ -54,13 +55,15 @@ pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;
 pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
+pub use fractum_kernels::liquid::CubicLaw;
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, Stemming, SymmetryPlanes};
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
-pub use interfaces::{FaceReading, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
+pub use interfaces::{FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
+pub use liquid::{Injection, InjectionDrive, Liquid, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState};
 pub use measure::counts::{CountKind, Counts};
 pub use measure::crack_extent::CrackProbe;
 pub use measure::crack_measure::{CrackMeasure, InsideCracks};

@@ -11,6 +11,7 @@ use crate::coupling::DebrisState;
 use crate::domain::Left;
 use crate::interfaces::InterfacesState;
 use crate::ledger::{Books, Ledger};
+use crate::liquid::{Liquid, LiquidState};
 use crate::scene::{RemovalTally, Scene};
 use crate::stable_step::update_wall_frequency;
 
@@ -34,6 +35,7 @@ pub struct SceneState {
     left: Left,
     conditions: ConditionsState,
     interfaces: Option<InterfacesState>,
+    liquid: Option<LiquidState>,
 }
 
 impl SceneState {
@@ -57,7 +59,7 @@ impl SceneState {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
         let frequencies = (self.frequency, self.governing, self.removals);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
-        let rest = (&self.left, &self.conditions, &self.interfaces);
+        let rest = (&self.left, &self.conditions, &self.interfaces, &self.liquid);
         (touching, (&self.ledger, &self.books), frequencies, of_contacts, rest)
     }
 
@@ -95,6 +97,9 @@ impl Scene {
         if let Some(interfaces) = state.interfaces {
             self.optional.interfaces.restore(&self.solid, interfaces);
         }
+        if let (Some(liquid), Some(saved)) = (&mut self.optional.liquid, state.liquid) {
+            liquid.restore(saved);
+        }
         self.ledger = state.ledger;
         self.books = state.books;
         self.frequencies.stable = StableStep { frequency: state.frequency, governing: state.governing };
@@ -125,5 +130,6 @@ pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {
         left: scene.removals.left.clone(),
         conditions: ConditionsState::of(&scene.loads, &scene.optional.surface_supports),
         interfaces: (!scene.interfaces().is_empty()).then(|| scene.interfaces().state()),
+        liquid: scene.liquid().map(Liquid::state),
     }
 }

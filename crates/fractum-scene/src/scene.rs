@@ -14,6 +14,7 @@ use crate::gas::Gas;
 use crate::heat::Heat;
 use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
+use crate::liquid::Liquid;
 use crate::modes::Modes;
 use crate::watch::Watch;
 
@@ -53,6 +54,8 @@ pub(crate) struct Optional {
     pub(crate) heat: Option<Box<Heat>>,
     /// Faces along which the nodes of solids are doubled.
     pub(crate) interfaces: Interfaces,
+    /// Liquid in them.
+    pub(crate) liquid: Option<Box<Liquid>>,
     /// What leaves when this scene is a stage that begins.
     pub(crate) excavation: Option<Box<Excavation>>,
     /// Whether the scene moves from one equilibrium to the next. These know small strains alone, and bodies keep them on the way.
@@ -131,6 +134,11 @@ impl Scene {
     /// Interfaces between elements.
     pub fn interfaces(&self) -> &Interfaces {
         &self.optional.interfaces
+    }
+
+    /// Liquid in interfaces.
+    pub fn liquid(&self) -> Option<&Liquid> {
+        self.optional.liquid.as_deref()
     }
 
     /// Gas in holes and cracks.

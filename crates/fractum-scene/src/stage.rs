@@ -18,6 +18,7 @@ impl Scene {
         let before = std::mem::replace(&mut self.loads, next.loads);
         self.loads.follow(before, &self.solid);
         let since = if moving { self.clock.dt_before } else { 0.0 };
+        self.optional.interfaces.take_pressures(next.optional.interfaces);
         let excavation = next.optional.excavation;
         let bear = excavation.as_ref().map(|_| forces(self, since));
         let stored = self.optional.surface_supports.stored();

@@ -144,7 +144,7 @@ fn add_interface_forces(scene: &mut Scene, elapsed: f64) -> Work {
         return Work::default();
     }
     let Scene { optional, solid, supports, clock, books, .. } = scene;
-    let step = InterfaceStep { elapsed, dt_after: clock.dt_after, held: supports.held() };
+    let step = InterfaceStep { time: clock.time, elapsed, dt_after: clock.dt_after, held: supports.held() };
     let (work, taken) = optional.interfaces.add_forces(solid, &step);
     books.interfaces += taken;
     work

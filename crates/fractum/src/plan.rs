@@ -278,6 +278,11 @@ impl Plan {
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
+        if let Some(liquid) = scene.liquid() {
+            let places = case.flows.liquid.as_ref().map_or(0, |liquid| liquid.injections.len());
+            let words = if places == 1 { "injection" } else { "injections" };
+            self.add("liquid", format!("{places} {words} into {} cells of interfaces", liquid.cell_count()));
+        }
         if !matches!(case.solver.kind, SolverKind::Heat | SolverKind::Modes) {
             self.describe_what_moves(case, scene);
         }

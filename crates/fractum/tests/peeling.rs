@@ -71,17 +71,34 @@ fn supports_that_hold_nodes_of_both_sides_bring_no_energy() {
     }
 }
 
+/// Liquid that is put in at one end.
+const LIQUID: &str =
+    "[liquid]\nviscosity = \"1 mPa s\"\n[[liquid.injections]]\nwhere = \"x > 0 m\"\nrate = \"1e-9 m^3/s\"\n";
+
 #[test]
 fn what_does_not_enter_interfaces_is_refused() {
     let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
     let case = PEELED.replace("NU", "0.3").replace("SPEED", "0.5 m/s");
     let rest = |text: &str| case.replace("[solver]\n", &format!("{text}[solver]\n"));
+    let at_rest = |text: &str| rest(text).replace("end = \"1 ms\"", "kind = \"static\"\nend = \"1 ms\"");
     let pressed = "[[loads]]\nwhere = \"y < 0.01 mm\"\npressure = \"1 MPa\"\nin_cracks = true\n";
     for (text, words) in [
         (case.replace("end = \"1 ms\"", "kind = \"modes\""), "with solver.kind = \"modes\""),
         (rest("[in_situ]\nstress = { xx = \"-1 MPa\" }\n"), "with [in_situ]"),
         (rest(pressed), "beside loads[].in_cracks"),
         (case.replace("crack_area = true", "crack = { measure = \"count\" }"), "interfaces are not counted as cracks"),
+        (rest(LIQUID), "flows between states of equilibrium alone"),
+        (at_rest(&LIQUID.replace("x > 0 m", "x > 5 m")), "holds for none of"),
+        (at_rest(&LIQUID.replace("x > 0 m", "y < 0.01 mm")), "none of its nodes is on an interface"),
+        (
+            at_rest(&LIQUID.replace("viscosity", "interfaces = [\"gleu\"]\nviscosity")),
+            "the name of one of [[interfaces]]",
+        ),
+        (
+            at_rest(LIQUID).replace("cohesion", "pressure = \"1 MPa\"\ncohesion"),
+            "in an interface that [liquid] flows in",
+        ),
+        (at_rest(LIQUID).replace("kind = \"static\"", "kind = \"static\"\ncontrol = \"path\""), "liquid flows in time"),
     ] {
         let ended = Workplace::with_mesh(&text, &mesh).fractum(&["check", "case.toml"]);
         assert_eq!(ended.code, Some(1), "{words}: {}", ended.stderr);

@@ -6,10 +6,10 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{CrackMeasure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
+use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
-use super::Context;
 use super::bodies::{Numbering, Part};
+use super::{Context, function};
 use crate::model::{Case, Interface, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
 use crate::read::interfaces::LEAST_DUCTILITY;
 use crate::{Diagnostic, Diagnostics, Place, nearest};
@@ -114,7 +114,11 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
             context.error(&interface.place, found, "smaller elements along it, or a normal_stiffness");
         }
     }
-    let interfaces = Interfaces::new(&scene.solid, kinds, faces);
+    let pressures = case.interfaces.iter().map(|interface| {
+        let (value, in_broken) = interface.pressure.as_ref()?;
+        Some(InsidePressure { value: function(&value.value), in_broken: *in_broken })
+    });
+    let interfaces = Interfaces::new(&scene.solid, kinds, faces).with_pressures(pressures.collect());
     scene.with_interfaces(interfaces)
 }
 
@@ -171,7 +175,11 @@ fn check_cracks(context: &mut Context<'_>, place: &Place) {
     }
     let presses = |load: &&Load| matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
     if case.loads.iter().any(|load| presses(&load)) {
-        context.error(place, "beside loads[].in_cracks", "a pressure on facets alone: it does not enter interfaces");
+        context.error(
+            place,
+            "beside loads[].in_cracks",
+            "a pressure on facets alone: interfaces have a pressure of their own",
+        );
     }
     let counts = |kind: &ProbeKind| matches!(kind, ProbeKind::Crack(crack) if crack.measure == CrackMeasure::Count);
     for probe in case.probes.iter().filter(|probe| counts(&probe.kind)) {

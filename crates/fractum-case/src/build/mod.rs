@@ -14,6 +14,7 @@ mod gauges;
 mod heat;
 mod in_situ;
 mod interfaces;
+mod liquid;
 mod load_doubts;
 mod meeting_doubts;
 mod model_doubts;
@@ -230,6 +231,7 @@ impl<'a> Context<'a> {
             .with_ties(&ties.attachments)
             .with_surface_supports(surface_supports);
         let scene = interfaces::with_interfaces(self, scene, &parts, &numbering);
+        let scene = liquid::with_liquid(self, scene, &numbering);
         warnings.extend(interfaces::doubts(self, &scene));
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene = contacts::with_contacts(

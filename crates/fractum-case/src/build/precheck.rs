@@ -7,7 +7,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Domain, Scene};
 
-use super::{Context, interfaces, rate};
+use super::{Context, interfaces, liquid, rate};
 use crate::measure::ContactForce;
 use crate::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
@@ -26,6 +26,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_heat_probes(context);
     context.check_subcycling();
     interfaces::check(context);
+    liquid::check(context);
     rate::check(context);
 }
 
@@ -192,6 +193,10 @@ fn check_time_functions(context: &mut Context<'_>) {
     for condition in case.flows.heat.iter().flat_map(|heat| &heat.conditions) {
         functions.push((condition.kind.function(), Some(&condition.on)));
     }
+    let pressures = case.interfaces.iter().filter_map(|interface| interface.pressure.as_ref());
+    functions.extend(pressures.map(|(function, _)| (function, None)));
+    let injections = case.flows.liquid.iter().flat_map(|liquid| &liquid.injections);
+    functions.extend(injections.map(|own| (&own.value, Some(&own.on))));
     for (function, on) in functions {
         check_function(context, &function.value, function, on);
     }

@@ -23,11 +23,17 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("interfaces[].friction_angle", K::Angle, "residual_friction_angle", "Angle of friction while it is whole: pressure p raises the strength against sliding by p times its tangent; from 0 to below 90 deg"),
     key("interfaces[].residual_friction_angle", K::Angle, "\"0 deg\"", "Angle of friction once it is broken, from 0 to below 90 deg"),
     key("interfaces[].dilation_angle", K::Angle, "\"0 deg\"", "Angle by which broken sides under pressure rise as they slide, from 0 to the residual friction angle"),
+    key("interfaces[].pressure", K::TimeFunction(D::PRESSURE), "", "Pressure of what is between the sides, which pushes them apart; friction and strength feel what is left of the pressure of the sides"),
+    key("interfaces[].pressure_in", K::Choice(pressure_in), "\"everywhere\"", "Where that pressure acts: everywhere, or by the share of the strength that is lost (broken)"),
     key("interfaces[].dilation_slip", K::Quantity(D::LENGTH), "no end", "Slip beyond which they rise no further, > 0"),
 ];
 
 fn mixed_modes() -> Vec<&'static str> {
     vec!["power", "benzeggagh-kenane"]
+}
+
+fn pressure_in() -> Vec<&'static str> {
+    vec!["everywhere", "broken"]
 }
 
 fn softenings() -> Vec<&'static str> {

@@ -16,6 +16,7 @@ mod fragment;
 mod fragment_size;
 mod gas;
 mod heat;
+mod liquid;
 mod load;
 mod mode;
 mod moment;
@@ -160,6 +161,7 @@ measures! {
     temperature::Temperature,
     heat::HeatOfAll,
     gas::GasIn,
+    liquid::LiquidIn,
     crack_area::CrackArea,
     crack::Crack,
     radial_cracks::RadialCracksAbout,

@@ -13,6 +13,8 @@ pub struct Flows {
     pub gas: Option<super::Gas>,
     /// Heat in solids and bonded bodies.
     pub heat: Option<Heat>,
+    /// Liquid in interfaces.
+    pub liquid: Option<super::Liquid>,
 }
 
 /// Heat of a case.

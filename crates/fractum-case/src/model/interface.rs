@@ -2,7 +2,7 @@
 
 use fractum_scene::InterfaceLaw;
 
-use crate::{Place, Spanned};
+use crate::{Place, Spanned, TimeFunction};
 
 /// Inner faces of solids with a strength of their own.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +17,8 @@ pub struct Interface {
     pub law: InterfaceLaw,
     /// Stiffness across and along the face [Pa/m]; none where it is stiff until its strength is met.
     pub stiffness: Option<[f64; 2]>,
+    /// Pressure of what is between its sides [Pa], and whether it acts where the strength is lost alone.
+    pub pressure: Option<(Spanned<TimeFunction>, bool)>,
 }
 
 /// The faces of an interface.

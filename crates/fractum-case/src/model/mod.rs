@@ -8,6 +8,7 @@ mod gas;
 mod gauges;
 mod heat;
 mod interface;
+mod liquid;
 mod loose;
 mod material;
 mod output;
@@ -35,6 +36,7 @@ pub use gas::{Gas, GasHole, GasLaw, Preset};
 pub use gauges::Gauges;
 pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use interface::{Interface, InterfaceFaces};
+pub use liquid::{Liquid, LiquidInjection};
 pub use loose::{LooseBody, LooseSource};
 pub use material::{Beds, Damage, Material};
 pub use output::Output;
@@ -75,7 +77,7 @@ pub struct Case {
     pub loads: Vec<Load>,
     /// Stress of the solids before the run.
     pub in_situ: Option<InSitu>,
-    /// Gas and heat.
+    /// Gas, heat and liquid.
     pub flows: Flows,
     /// What leaves as the stage begins, where stages take something out.
     pub excavation: Option<Excavation>,
@@ -296,7 +298,9 @@ impl Case {
         let loads = self.loads.iter().filter_map(|load| load.kind.on());
         let loads = loads.filter_map(|(on, group_use)| on.group.as_ref().map(|group| (group, group_use)));
         let in_situ = self.in_situ.iter().flat_map(|own| &own.groups).map(|group| (group, GroupUse::Facets));
-        let Flows { gas, heat } = &self.flows;
+        let Flows { gas, heat, liquid } = &self.flows;
+        let injections = liquid.iter().flat_map(|liquid| &liquid.injections).filter_map(|own| own.on.group.as_ref());
+        let injections = injections.map(|group| (group, GroupUse::ProbeNodes));
         let holes = gas.iter().flat_map(|gas| &gas.holes).filter_map(|hole| hole.on.group.as_ref());
         let holes = holes.map(|group| (group, GroupUse::Facets));
         let heated = heat.iter().flat_map(|heat| &heat.conditions);
@@ -310,7 +314,7 @@ impl Case {
         let openings = opening.into_iter().flat_map(|o| [&o.group, &o.against]).map(|g| (g, GroupUse::ProbeNodes));
         let of_mesh =
             |group: &&Spanned<String>| self.particle_group(&group.value).is_none() && self.tool(&group.value).is_none();
-        let named = supports.chain(loads).chain(holes).chain(heated).chain(probes).chain(gauges);
+        let named = supports.chain(loads).chain(holes).chain(heated).chain(injections).chain(probes).chain(gauges);
         let named = named.filter(|(group, _)| of_mesh(group));
         bodies.chain(ties).chain(named).chain(in_situ).chain(openings).chain(stations).collect()
     }

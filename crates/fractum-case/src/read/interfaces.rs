@@ -3,10 +3,11 @@
 use fractum_scene::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
 
 use super::names;
+use super::time_functions::time_function;
 use crate::model::{Interface, InterfaceFaces};
 use crate::reader::Table;
 use crate::usual::{FRACTURE_ENERGY, STRENGTH};
-use crate::{Diagnostic, Spanned};
+use crate::{Diagnostic, Spanned, TimeFunction};
 
 /// Energy over that stored up to the strength below which softening would snap back.
 pub(crate) const LEAST_DUCTILITY: f64 = 1.05;
@@ -40,9 +41,22 @@ fn interface(table: Table<'_>, number: usize) -> Option<Interface> {
     };
     let stiffness = normal.zip(shear).map(|(normal, shear)| Some([normal?, shear?]));
     let is_firm = law.zip(stiffness).map(|(law, stiffness)| stiffness.is_none_or(|own| is_firm(&table, law, own)));
+    let pressure = pressure(&table);
     let place = table.place.clone();
     table.finish("here");
-    Some(Interface { name, place, along: along?, law: law.filter(|_| is_firm == Some(true))?, stiffness: stiffness? })
+    let law = law.filter(|_| is_firm == Some(true));
+    Some(Interface { name, place, along: along?, law: law?, stiffness: stiffness?, pressure: pressure? })
+}
+
+/// Pressure inside, and whether it acts where the strength is lost alone.
+fn pressure(table: &Table<'_>) -> Option<Option<(Spanned<TimeFunction>, bool)>> {
+    if !table.has("pressure") {
+        table.refuse("pressure_in", "without pressure");
+        return Some(None);
+    }
+    let in_broken = table.one_of("pressure_in", &[("everywhere", false), ("broken", true)]).or(false);
+    let value = time_function(table, "pressure").spanned().required()?;
+    Some(Some((value, in_broken)))
 }
 
 fn along(table: &Table<'_>) -> Option<InterfaceFaces> {

@@ -15,6 +15,7 @@ mod heat;
 mod in_situ;
 mod interface;
 pub(crate) mod interfaces;
+mod liquid;
 mod loose;
 mod materials;
 mod names;
@@ -204,6 +205,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     }
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
+    let liquid = liquid::read(&table);
     let plots = plots::read(&table, &probes);
     let output = output::read(&table, solver.as_ref().map(|solver| solver.end), plots);
     let expect = expect::read(&table, &probes);
@@ -228,7 +230,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         supports: supports?,
         loads: loads?,
         in_situ: in_situ?,
-        flows: Flows { gas: gas?, heat: heat? },
+        flows: Flows { gas: gas?, heat: heat?, liquid: liquid? },
         excavation: excavation?,
         damping,
         solver: solver?,

@@ -117,6 +117,25 @@ impl SpringInterface {
             + crossed.transpose()
     }
 
+    /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across. By differences, away from zero: towards further
+    /// softening, and of faces that just touch towards their opening.
+    ///
+    /// - `state`: the history that [`SpringInterface::load`] takes at `jump`
+    #[inline]
+    pub fn jacobian(&self, jump: &Vec3, state: &InterfaceState) -> Mat3 {
+        let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
+        let here = at(*jump);
+        let onset = self.law.tensile_strength / self.stiffness[0] + self.law.cohesion / self.stiffness[1];
+        let step = DIFFERENCE * (jump.norm() + onset).max(f64::MIN_POSITIVE.sqrt());
+        let column = |axis: usize| {
+            let step = if jump[axis] < 0.0 { -step } else { step };
+            let mut moved = *jump;
+            moved[axis] += step;
+            (at(moved) - here) / step
+        };
+        Mat3::from_columns(&[0, 1, 2].map(column))
+    }
+
     /// Lets the strength go down where the jump asks for it.
     #[inline]
     fn soften(&self, jump: &Vec3, pressure: f64, state: &mut InterfaceState) {

@@ -8,6 +8,7 @@ mod contact;
 mod damage;
 mod draw;
 mod interface;
+mod liquid;
 mod material;
 mod rate;
 
@@ -79,6 +80,8 @@ const LAWS: &[Row] = &[
             contact::contact(draw, law, true)
         },
     },
+    Row { law: "liquid between walls", holds: liquid::flow },
+    Row { law: "leak-off", holds: liquid::leak },
     Row { law: "restitution", holds: contact::restitution },
     Row { law: "edge, exponential", holds: |draw| damage::way(draw, Softening::Exponential, false) },
     Row { law: "edge, linear", holds: |draw| damage::way(draw, Softening::Linear, false) },

@@ -1,20 +1,22 @@
 //! Interfaces between elements as faces for ParaView.
 
 use fractum_math::Vec3;
-use fractum_scene::{FaceReading, InterfaceFace, Scene};
+use fractum_scene::{FaceReading, InterfaceFace, LiquidReading, Scene};
 use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
 
 use crate::OutputError;
 
 /// The faces of interfaces beside elements that are left, without load and with the mean displacement of both sides: opening, slip, tractions, the share of
-/// the strength that is left, and the number of the interface.
+/// the strength that is left, and the number of the interface; with liquid its pressure, the aperture and the part that is filled.
 ///
 /// # Errors
 /// Arrays that do not fit together.
 pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
     let (solid, interfaces) = (&scene.solid, scene.interfaces());
-    let readings = (0..interfaces.faces().len()).map(|face| (&interfaces.faces()[face], interfaces.reading(face)));
-    let faces: Vec<(&InterfaceFace, FaceReading)> = readings.filter(|(_, is)| is.area > 0.0).collect();
+    let readings = (0..interfaces.faces().len()).map(|face| (face, interfaces.reading(face)));
+    let readings: Vec<(usize, FaceReading)> = readings.filter(|(_, is)| is.area > 0.0).collect();
+    let faces: Vec<(&InterfaceFace, FaceReading)> =
+        readings.iter().map(|&(face, is)| (&interfaces.faces()[face], is)).collect();
     let plane = faces.iter().all(|(face, _)| face.corners() == 2);
     // Corners of faces stand for themselves: both sides may open differently on either side of an edge.
     let (mut points, mut displacement) = (Vec::new(), Vec::new());
@@ -34,7 +36,15 @@ pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
     let (normal, shear) = (column(|is| is.normal_traction), column(|is| is.shear_traction));
     let slip: Vec<[f64; 3]> = faces.iter().map(|(_, is)| <[f64; 3]>::from(is.slip as Vec3)).collect();
     let kinds: Vec<i32> = faces.iter().map(|(face, _)| face.kind as i32).collect();
-    let cell_data = [
+    let liquid = |face: usize| scene.liquid().and_then(|liquid| liquid.reading(interfaces, face)).unwrap_or_default();
+    let wet: Vec<LiquidReading> = readings.iter().map(|(face, _)| liquid(*face)).collect();
+    let of_liquid = [
+        ("liquid_pressure", (|is| is.pressure) as fn(&LiquidReading) -> f64),
+        ("aperture", |is| is.aperture),
+        ("filled", |is| is.filled),
+    ];
+    let of_liquid = of_liquid.map(|(name, of)| (name, wet.iter().map(of).collect::<Vec<f64>>()));
+    let mut cell_data = vec![
         Field::scalar("opening", &opening),
         Field::vector("slip", &slip),
         Field::scalar("normal_traction", &normal),
@@ -42,6 +52,9 @@ pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
         Field::scalar("strength_left", &residual),
         Field::integer("interface", &kinds),
     ];
+    if scene.liquid().is_some() {
+        cell_data.extend(of_liquid.iter().map(|(name, values)| Field::scalar(name, values)));
+    }
     let point_data = [Field::vector("displacement", &displacement)];
     let time = Some(scene.clock.time);
     let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time };

@@ -7,6 +7,8 @@
 //!
 //! Jumps are small: corners stay opposite each other, and the frame of a face is that of its middle surface where bodies turn.
 
+mod inside;
+pub(crate) mod joints;
 pub(crate) mod motion;
 pub(crate) mod reading;
 pub(crate) mod rest;
@@ -15,6 +17,7 @@ use fractum_fem::{Kinematics, Solid};
 use fractum_kernels::interface::{InterfaceForce, InterfaceLaw, InterfaceState};
 use fractum_math::{Mat3, Vec3, connected};
 
+pub use inside::InsidePressure;
 pub use reading::{FaceReading, InterfacesState};
 
 /// What the faces of an interface have in common.
@@ -87,6 +90,10 @@ struct Point {
     jump: Vec3,
     /// Force on its first node at the last look, in space [N].
     pull: Vec3,
+    /// Place without load [m].
+    place: Vec3,
+    /// Force of the pressure inside on its second node at the last look, in space [N].
+    thrust: Vec3,
     /// The same by its parts.
     force: InterfaceForce,
 }
@@ -101,8 +108,10 @@ impl Point {
 /// What a step has taken [J].
 #[derive(Clone, Copy, Debug, Default)]
 struct Taken {
-    /// All work of the jumps.
+    /// All work of the jumps against the interface.
     work: f64,
+    /// Work of the pressure inside.
+    external: f64,
     friction: f64,
     /// What stiff sides lose as they meet.
     impact: f64,
@@ -122,6 +131,8 @@ struct Cluster {
 #[derive(Clone, Debug, Default)]
 pub struct Interfaces {
     kinds: Vec<InterfaceKind>,
+    /// Pressure inside of each; empty where none has any.
+    pressures: Vec<Option<InsidePressure>>,
     faces: Vec<InterfaceFace>,
     /// Area of each face [m²]; 0 once an element beside it has left.
     areas: Vec<f64>,
@@ -198,6 +209,8 @@ impl Interfaces {
                     tried: state,
                     jump: Vec3::zeros(),
                     pull: Vec3::zeros(),
+                    place: solid.reference[pair[0] as usize],
+                    thrust: Vec3::zeros(),
                     force: InterfaceForce::default(),
                 });
             }
@@ -208,7 +221,9 @@ impl Interfaces {
             (0u32..).zip(&faces).flat_map(|(face, own)| own.elements.map(|(body, element)| (body, element, face)));
         let mut beside: Vec<(u32, u32, u32)> = sides.collect();
         beside.sort_unstable();
-        let mut interfaces = Interfaces { kinds, faces, areas, clusters, points_of, beside, frequency_square: 0.0 };
+        let (pressures, frequency_square) = (Vec::new(), 0.0);
+        let mut interfaces =
+            Interfaces { kinds, pressures, faces, areas, clusters, points_of, beside, frequency_square };
         interfaces.frequency_square = interfaces.added_frequency_square(solid);
         interfaces
     }
@@ -307,6 +322,7 @@ impl Interfaces {
                     lost += point.force.stored * (point.area - left);
                     point.area = left;
                     point.pull *= ratio;
+                    point.thrust *= ratio;
                     point.faces.retain(|own| own.0 != face || left == 0.0);
                 }
                 self.points_of[face as usize] = [None; 3];

@@ -5,7 +5,8 @@ use fractum_kernels::interface::{FreeJump, InterfaceLaw, SpringInterface, stiff_
 use fractum_math::{Vec3, Work};
 use rayon::prelude::*;
 
-use super::{Cluster, InterfaceKind, Interfaces, Point, Taken};
+use super::inside::pressure_in;
+use super::{Cluster, InsidePressure, InterfaceKind, Interfaces, Point, Taken};
 
 /// Sweeps over the stiff points of nodes in one place, and the change of their forces that is rounding.
 const SWEEPS: usize = 60;
@@ -15,6 +16,8 @@ const TOGETHER: usize = 128;
 
 /// A step as interfaces see it.
 pub(crate) struct InterfaceStep<'a> {
+    /// Time tⁿ [s].
+    pub(crate) time: f64,
     /// Step that led here; 0 where nothing has moved before [s].
     pub(crate) elapsed: f64,
     /// Step that follows [s].
@@ -32,27 +35,40 @@ impl InterfaceStep<'_> {
 
 impl Interfaces {
     /// Adds their forces, once all others but those of rigid shapes are there; what friction and the meeting of stiff sides took, and all other work that
-    /// they took [J].
+    /// they took [J]. Pressure inside does work from outside.
     pub(crate) fn add_forces(&mut self, solid: &mut Solid, step: &InterfaceStep) -> (Work, f64) {
         self.turn(solid);
-        let Interfaces { kinds, clusters, .. } = self;
+        let Interfaces { kinds, pressures, clusters, .. } = self;
         let of_solid = &*solid;
-        clusters.par_iter_mut().with_min_len(TOGETHER).for_each(|cluster| cluster.load(kinds, of_solid, step));
+        clusters
+            .par_iter_mut()
+            .with_min_len(TOGETHER)
+            .for_each(|cluster| cluster.load(kinds, pressures, of_solid, step));
         let mut sum = Taken::default();
         for cluster in clusters {
             for (&node, force) in cluster.nodes.iter().zip(&cluster.forces) {
                 solid.force[node as usize] += force;
             }
-            let Taken { work, friction, impact } = cluster.taken;
-            sum = Taken { work: sum.work + work, friction: sum.friction + friction, impact: sum.impact + impact };
+            let Taken { work, external, friction, impact } = cluster.taken;
+            let (work, external) = (sum.work + work, sum.external + external);
+            sum = Taken { work, external, friction: sum.friction + friction, impact: sum.impact + impact };
         }
-        (Work::contact(0.0, sum.friction, sum.impact), sum.work - sum.friction - sum.impact)
+        (
+            Work { external: sum.external, ..Work::contact(0.0, sum.friction, sum.impact) },
+            sum.work - sum.friction - sum.impact,
+        )
     }
 }
 
 impl Cluster {
     /// Finds its forces at tⁿ and what the step before has taken.
-    fn load(&mut self, kinds: &[InterfaceKind], solid: &Solid, step: &InterfaceStep) {
+    fn load(
+        &mut self,
+        kinds: &[InterfaceKind],
+        pressures: &[Option<InsidePressure>],
+        solid: &Solid,
+        step: &InterfaceStep,
+    ) {
         let Cluster { nodes, points, forces, taken } = self;
         forces.fill(Vec3::zeros());
         *taken = Taken::default();
@@ -62,6 +78,15 @@ impl Cluster {
             let jump = jump(point, solid);
             if step.elapsed > 0.0 {
                 taken.half(point, jump, closing(law, stiffness));
+            }
+            let pressure = pressure_in(pressures, point.kind);
+            if let Some(pressure) = pressure {
+                let thrust = pressure.thrust(point, point.state.residual, step.time);
+                let before = std::mem::replace(&mut point.thrust, thrust);
+                if step.elapsed > 0.0 {
+                    taken.external += 0.5 * (before + point.thrust).dot(&(jump - point.jump));
+                }
+                push(forces, point, -point.thrust);
             }
             match stiffness {
                 Some(stiffness) => {

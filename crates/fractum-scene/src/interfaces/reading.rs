@@ -25,6 +25,7 @@ struct PointState {
     state: InterfaceState,
     jump: Vec3,
     pull: Vec3,
+    thrust: Vec3,
     cohesive: Vec3,
     friction: Vec3,
     contact: f64,
@@ -40,7 +41,7 @@ pub struct FaceReading {
     pub opening: f64,
     /// Slip of the second side against the first [m].
     pub slip: Vec3,
-    /// Traction of the first side on the second along the normal, tension positive [Pa].
+    /// Traction of the first side on the second along the normal, tension positive, without the pressure inside [Pa].
     pub normal_traction: f64,
     /// Size of the traction across it [Pa].
     pub shear_traction: f64,
@@ -126,10 +127,11 @@ impl Interfaces {
     pub(crate) fn state(&self) -> InterfacesState {
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points);
         let of = |point: &Point| {
-            let Point { area, turned, offset, state, jump, pull, force, .. } = point;
+            let Point { area, turned, offset, state, jump, pull, thrust, force, .. } = point;
             let InterfaceForce { cohesive, friction, contact, stored } = *force;
             let (area, turned, offset, state) = (*area, *turned, *offset, *state);
-            PointState { area, turned, offset, state, jump: *jump, pull: *pull, cohesive, friction, contact, stored }
+            let (jump, pull, thrust) = (*jump, *pull, *thrust);
+            PointState { area, turned, offset, state, jump, pull, thrust, cohesive, friction, contact, stored }
         };
         InterfacesState { areas: self.areas.clone(), points: points.map(of).collect() }
     }
@@ -150,9 +152,11 @@ impl Interfaces {
         }
         let own = self.clusters.iter_mut().flat_map(|cluster| &mut cluster.points);
         for (point, saved) in own.zip(points) {
-            let PointState { area, turned, offset, state, jump, pull, cohesive, friction, contact, stored } = saved;
+            let PointState { area, turned, offset, state, jump, pull, thrust, cohesive, friction, contact, stored } =
+                saved;
             (point.area, point.turned, point.offset) = (area, turned, offset);
-            (point.state, point.tried, point.jump, point.pull) = (state, state, jump, pull);
+            (point.state, point.tried, point.jump) = (state, state, jump);
+            (point.pull, point.thrust) = (pull, thrust);
             point.force = InterfaceForce { cohesive, friction, contact, stored };
         }
         self.turn(solid);

@@ -4,6 +4,7 @@ use fractum_fem::Solid;
 use fractum_kernels::interface::SpringInterface;
 use fractum_math::{Mat3, Vec3};
 
+use super::inside::pressure_in;
 use super::motion::Closing;
 use super::{InterfaceKind, Interfaces, Taken};
 
@@ -17,13 +18,21 @@ pub(crate) struct InterfaceSpring {
     pub(crate) force: Vec3,
     /// How it falls with the displacement of the second node against the first [N/m].
     pub(crate) stiffness: Mat3,
+    /// How it rises with time, by the pressure inside [N/s].
+    pub(crate) rate: Vec3,
 }
 
 impl Interfaces {
     /// Springs under a displacement field, with the histories of the last equilibrium.
     ///
+    /// - `time`: of that field; `ahead`: duration from which the rate of pressures is taken [s]
     /// - `share`: part of the secant in their stiffness, the rest of which is their tangent
-    pub(crate) fn springs(&self, field: &[Vec3], share: f64) -> impl Iterator<Item = InterfaceSpring> {
+    pub(crate) fn springs(
+        &self,
+        field: &[Vec3],
+        [time, ahead]: [f64; 2],
+        share: f64,
+    ) -> impl Iterator<Item = InterfaceSpring> {
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0);
         points.filter_map(move |point| {
             let InterfaceKind { law, stiffness, .. } = &self.kinds[point.kind as usize];
@@ -39,38 +48,56 @@ impl Interfaces {
                 stiffness =
                     stiffness * share + interface.tangent(&jump, &point.state, &traction, secant) * (1.0 - share);
             }
+            let thrust = |time: f64| {
+                let pressure = pressure_in(&self.pressures, point.kind);
+                pressure.map_or_else(Vec3::zeros, |pressure| pressure.thrust(point, state.residual, time))
+            };
+            let pushed = thrust(time);
             Some(InterfaceSpring {
                 pair: point.pair,
                 normal: point.frame.row(0).transpose(),
-                force: -point.frame.tr_mul(&traction) * point.area,
+                force: pushed - point.frame.tr_mul(&traction) * point.area,
                 stiffness: point.frame.transpose() * stiffness * point.frame * point.area,
+                rate: (thrust(time + ahead) - pushed) / ahead,
             })
         })
     }
 
-    /// Takes over the histories of a state of equilibrium; what friction took, and all other work that they took [J].
-    pub(crate) fn accept_at_rest(&mut self, solid: &Solid) -> [f64; 2] {
-        let Interfaces { kinds, clusters, .. } = self;
-        let mut taken = Taken::default();
+    /// Takes over the histories of a state of equilibrium; what friction took, all other work that they took, that of pressure
+    /// inside, and what of the second one sides that were never joined have neither stored nor rubbed away: it is there as far as one step lets them part under
+    /// a pressure that only comes in it [J].
+    pub(crate) fn accept_at_rest(&mut self, solid: &Solid, time: f64) -> [f64; 4] {
+        let Interfaces { kinds, pressures, clusters, .. } = self;
+        let (mut taken, mut surplus) = (Taken::default(), 0.0);
         for point in clusters.iter_mut().flat_map(|cluster| &mut cluster.points).filter(|point| point.area > 0.0) {
             let InterfaceKind { law, stiffness: Some(stiffness), .. } = &kinds[point.kind as usize] else { continue };
             let interface = SpringInterface { law: *law, stiffness: *stiffness };
             let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
+            let before = (taken.work - taken.friction, point.area * point.force.stored);
             taken.half(point, b - a, Closing::Stored);
             point.force = interface.load(point.local(b - a), &mut point.state);
             point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
             taken.half(point, b - a, Closing::Stored);
+            if !law.is_bonded() {
+                surplus += taken.work - taken.friction - before.0 - (point.area * point.force.stored - before.1);
+            }
+            if let Some(pressure) = pressure_in(pressures, point.kind) {
+                let thrust = pressure.thrust(point, point.state.residual, time);
+                taken.external += 0.5 * (point.thrust + thrust).dot(&(b - a - point.jump));
+                point.thrust = thrust;
+            }
             point.jump = b - a;
         }
-        [taken.friction, taken.work - taken.friction]
+        [taken.friction, taken.work - taken.friction, taken.external, surplus]
     }
 
     /// Adds their forces at a state of equilibrium.
     pub(crate) fn add_forces_at_rest(&self, solid: &mut Solid) {
         for point in self.clusters.iter().flat_map(|cluster| &cluster.points) {
             let [a, b] = point.pair.map(|node| node as usize);
-            solid.force[a] += point.pull;
-            solid.force[b] -= point.pull;
+            let pull = point.pull - point.thrust;
+            solid.force[a] += pull;
+            solid.force[b] -= pull;
         }
     }
 }

@@ -52,6 +52,12 @@ pub(super) struct Spring {
 }
 
 impl Spring {
+    /// A spring without force between the nodes of a pair.
+    pub(super) fn between([partner, node]: [u32; 2], stiffness: Mat3) -> Self {
+        let (normal, force, rate) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
+        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate }
+    }
+
     /// A displacement field at its node, against that of its partner.
     pub(super) fn of(&self, field: &[Vec3]) -> Vec3 {
         let own = field[self.node as usize];
@@ -192,9 +198,9 @@ pub(super) fn contact_springs(
         Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
-    springs.extend(scene.interfaces().springs(field, slipping).map(|spring| {
-        let InterfaceSpring { pair: [partner, node], normal, force, stiffness } = spring;
-        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate: Vec3::zeros() }
+    springs.extend(scene.interfaces().springs(field, [times[1], ahead], slipping).map(|spring| {
+        let InterfaceSpring { pair: [partner, node], normal, force, stiffness, rate } = spring;
+        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate }
     }));
     if scene.shape_contacts.is_empty() {
         return springs;
@@ -301,9 +307,15 @@ pub(super) fn accept_contacts(scene: &mut Scene, before: &[Vec3], present: f64, 
     if !has_contacts(scene) {
         return;
     }
-    let [friction, taken] = scene.optional.interfaces.accept_at_rest(&scene.solid);
+    let [friction, taken, external, surplus] = scene.optional.interfaces.accept_at_rest(&scene.solid, time);
     scene.books.friction += friction;
     scene.books.interfaces += taken;
+    scene.books.external += external;
+    if let Some(liquid) = &mut scene.optional.liquid {
+        // The liquid that parts them comes at a mean pressure that is too low by as much.
+        scene.books.interfaces -= surplus;
+        liquid.state.viscous += surplus;
+    }
     scene.books.external -= scene.debris.accept_at_rest(&scene.solid, before);
     if !scene.shape_contacts.is_empty() {
         accept_grounds(scene, before, present, time);

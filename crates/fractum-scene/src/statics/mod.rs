@@ -27,6 +27,7 @@ mod solid_modes;
 mod static_dynamic;
 mod support_check;
 mod system;
+mod wet;
 
 use fractum_fem::{CellDamage, Seen, motion};
 use fractum_math::{Sym3, Vec3};
@@ -86,6 +87,8 @@ pub struct StaticSolver {
     touching: Touching,
     edges: Edges,
     anderson: Anderson,
+    /// The solution with liquid in interfaces, once it has begun.
+    wet: Option<Box<wet::Wet>>,
     applied: AppliedForces,
     /// Largest forces of a state of equilibrium so far [N].
     largest_forces: f64,
@@ -165,7 +168,8 @@ impl StaticSolver {
     pub fn new(scene: &Scene, settings: StaticSettings) -> Result<Self, SparseError> {
         let solid = &scene.solid;
         let elastic = !solid.has_damage();
-        let system = settings.lay_out(scene, &[])?;
+        let joined = if scene.liquid().is_some() { wet::pairs(scene) } else { Vec::new() };
+        let system = settings.lay_out(scene, &joined)?;
         let zero = vec![Vec3::zeros(); solid.reference.len()];
         Ok(StaticSolver {
             settings,
@@ -180,6 +184,7 @@ impl StaticSolver {
             touching: Touching::default(),
             edges: Edges::default(),
             anderson: Anderson::default(),
+            wet: None,
             applied: AppliedForces::default(),
             largest_forces: 0.0,
             steps: 0,
@@ -265,6 +270,9 @@ impl StaticSolver {
     /// # Errors
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
+        if scene.liquid().is_some() {
+            return self.step_wet(scene);
+        }
         motion::wake_phase_fields(&mut scene.solid);
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();

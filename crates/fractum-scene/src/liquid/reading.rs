@@ -1,0 +1,101 @@
+//! What is seen of a liquid.
+
+use fractum_math::Vec3;
+
+use super::Liquid;
+use crate::interfaces::Interfaces;
+
+/// Something about a liquid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LiquidMeasure {
+    /// Pressure where it comes in: mean over the cells [Pa].
+    Pressure,
+    /// Aperture there, mean over the cells [m].
+    Aperture,
+    /// Rate at which it comes in [m³/s].
+    Rate,
+    /// Volume put in so far [m³].
+    Injected,
+    /// Volume in the interfaces [m³].
+    Volume,
+    /// Volume that the walls have taken [m³].
+    Leaked,
+    /// Area that is wet; of cells that are partly filled that part [m²].
+    WettedArea,
+    /// Distance of the front from where it comes in [m].
+    Front,
+}
+
+/// Liquid on a face: means over its corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LiquidReading {
+    /// Pressure [Pa].
+    pub pressure: f64,
+    /// Aperture; 0 where rough walls are closed [m].
+    pub aperture: f64,
+    /// Part of the room that is filled.
+    pub filled: f64,
+}
+
+impl Liquid {
+    /// Part of the room of a cell that is filled.
+    fn filled(&self, cell: usize) -> f64 {
+        let [amount, room] = [self.state.amount[cell], self.state.room[cell]];
+        if self.state.pressure[cell] > 0.0 {
+            1.0
+        } else if amount > 0.0 && room > 0.0 {
+            (amount / room).min(1.0)
+        } else {
+            0.0
+        }
+    }
+
+    fn aperture_of(&self, cell: usize) -> f64 {
+        let cell = &self.network.cells[cell];
+        let sum = |&point: &u32| self.network.points[point as usize].area * self.state.aperture[point as usize];
+        cell.points.iter().map(sum).sum::<f64>() / cell.area
+    }
+
+    /// Something about it.
+    pub fn measure(&self, measure: LiquidMeasure) -> f64 {
+        let at = || self.injected_at.iter().flatten().map(|(cell, _)| *cell as usize);
+        let area = |cell: usize| self.network.cells[cell].area;
+        let mean = |of: &dyn Fn(usize) -> f64| {
+            at().map(|cell| area(cell) * of(cell)).sum::<f64>() / at().map(area).sum::<f64>()
+        };
+        let cells = 0..self.network.cells.len();
+        match measure {
+            LiquidMeasure::Pressure => mean(&|cell| self.state.pressure[cell]),
+            LiquidMeasure::Aperture => mean(&|cell| self.aperture_of(cell)),
+            LiquidMeasure::Rate => self.state.rates.iter().sum(),
+            LiquidMeasure::Injected => self.state.injected,
+            LiquidMeasure::Volume => self.state.amount.iter().sum(),
+            LiquidMeasure::Leaked => self.state.leaked.iter().sum(),
+            LiquidMeasure::WettedArea => cells.map(|cell| area(cell) * self.filled(cell)).sum(),
+            LiquidMeasure::Front => {
+                let places: Vec<Vec3> = at().map(|cell| self.network.cells[cell].place).collect();
+                let middle = places.iter().sum::<Vec3>() / places.len().max(1) as f64;
+                let wet = cells.filter(|&cell| self.filled(cell) > 0.0);
+                wet.map(|cell| (self.network.cells[cell].place - middle).norm()).fold(0.0, f64::max)
+            }
+        }
+    }
+
+    /// Liquid on a face; none of an interface that it does not flow in.
+    pub fn reading(&self, interfaces: &Interfaces, face: usize) -> Option<LiquidReading> {
+        let own = &interfaces.faces()[face];
+        if !self.settings.interfaces.contains(&own.kind) {
+            return None;
+        }
+        let share = 1.0 / own.corners() as f64;
+        let mut mean = LiquidReading::default();
+        for at in interfaces.points_of_face(face).into_iter().flatten() {
+            let Some(index) = self.network.point_at(at).map(|point| point as usize) else { continue };
+            let cell = self.network.points[index].cell as usize;
+            mean.pressure += share * self.state.pressure[cell];
+            mean.aperture += share * self.state.aperture[index].max(0.0);
+            mean.filled += share * self.filled(cell);
+        }
+        Some(mean)
+    }
+}

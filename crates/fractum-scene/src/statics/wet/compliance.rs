@@ -1,0 +1,116 @@
+//! The solids as interfaces see them: jumps under forces between pairs of nodes, with springs of a constant stiffness in all interfaces.
+
+use fractum_math::{Mat3, Vec3};
+use fractum_sparse::SparseError;
+
+use crate::interfaces::joints::{Joint, JointPoint};
+use crate::scene::Scene;
+use crate::statics::contact::Spring;
+use crate::statics::linear_system::LinearSystem;
+
+/// Elastic solids whose interfaces are springs.
+pub(super) struct Compliance {
+    pub(super) joints: Vec<Joint>,
+    /// Unknown components of a displacement.
+    pub(super) axes: usize,
+    springs: Vec<Spring>,
+    prepared: bool,
+    /// Jumps of all pairs under a unit force between the nodes of one, by pair and axis; none that nobody has asked for.
+    columns: Vec<Option<Vec<Vec3>>>,
+    force: Vec<Vec3>,
+    field: Vec<Vec3>,
+}
+
+/// Stiffness of the spring of a point in space [N/m].
+pub(super) fn spring_of(point: &JointPoint) -> Mat3 {
+    let [normal, across] = point.interface.stiffness;
+    point.frame.transpose() * Mat3::from_diagonal(&Vec3::new(normal, across, across)) * point.frame * point.area
+}
+
+impl Compliance {
+    pub(super) fn new(scene: &Scene) -> Self {
+        let joints = scene.interfaces().joints();
+        let axes = if scene.solid.is_plane() { 2 } else { 3 };
+        let spring = |joint: &Joint| Spring::between(joint.pair, joint.points.iter().map(spring_of).sum());
+        let (springs, columns) = (joints.iter().map(spring).collect(), vec![None; axes * joints.len()]);
+        let zero = vec![Vec3::zeros(); scene.solid.reference.len()];
+        Compliance { joints, axes, springs, prepared: false, columns, force: zero.clone(), field: zero }
+    }
+
+    /// Factorises the stiffness, once.
+    pub(super) fn prepare(&mut self, scene: &Scene, system: &mut LinearSystem) -> Result<(), SparseError> {
+        if !self.prepared {
+            system.begin();
+            system.prepare(scene, &scene.solid.cell_damage(), &self.springs)?;
+            self.prepared = true;
+        }
+        Ok(())
+    }
+
+    /// Jumps of all pairs in a displacement field.
+    pub(super) fn jumps(&self, field: &[Vec3]) -> Vec<Vec3> {
+        self.joints.iter().map(|joint| field[joint.pair[1] as usize] - field[joint.pair[0] as usize]).collect()
+    }
+
+    /// Displacements under forces from outside, with forces between pairs.
+    ///
+    /// - `field`: has the prescribed displacements, and gets the others
+    /// - `outer`: forces on the nodes; `between`: pairs and the forces on their second nodes [N]
+    pub(super) fn displace(
+        &mut self,
+        scene: &Scene,
+        system: &mut LinearSystem,
+        field: &mut [Vec3],
+        outer: &[Vec3],
+        between: impl Iterator<Item = (u32, Vec3)>,
+    ) -> Result<(), SparseError> {
+        let Compliance { joints, springs, force, field: change, .. } = self;
+        scene.solid.secant_force(&scene.solid.cell_damage(), field, force);
+        force.iter_mut().zip(outer).for_each(|(force, outer)| *force = outer - *force);
+        for spring in springs.iter() {
+            spring.push(-(spring.stiffness * spring.of(field)), force);
+        }
+        for (joint, pushed) in between {
+            push(&joints[joint as usize], pushed, force);
+        }
+        system.solve(force, change)?;
+        field.iter_mut().zip(change.iter()).for_each(|(field, change)| *field += change);
+        Ok(())
+    }
+
+    /// Finds the jumps under unit forces between the nodes of some pairs.
+    pub(super) fn find(&mut self, system: &mut LinearSystem, active: &[u32]) -> Result<(), SparseError> {
+        for &joint in active {
+            for axis in 0..self.axes {
+                let place = joint as usize * self.axes + axis;
+                if self.columns[place].is_some() {
+                    continue;
+                }
+                self.force.fill(Vec3::zeros());
+                push(
+                    &self.joints[joint as usize],
+                    Vec3::from_fn(|a, _| f64::from(u8::from(a == axis))),
+                    &mut self.force,
+                );
+                system.solve(&self.force, &mut self.field)?;
+                self.columns[place] = Some(self.jumps(&self.field));
+            }
+        }
+        Ok(())
+    }
+
+    /// Jump of a pair per force between the nodes of another, for which [`Compliance::find`] has been asked [m/N].
+    pub(super) fn between(&self, pair: u32, pushed: u32) -> Mat3 {
+        let column = |axis: usize| match self.columns.get(pushed as usize * self.axes + axis) {
+            Some(Some(column)) if axis < self.axes => column[pair as usize],
+            _ => Vec3::zeros(),
+        };
+        Mat3::from_columns(&[0, 1, 2].map(column))
+    }
+}
+
+fn push(joint: &Joint, pushed: Vec3, forces: &mut [Vec3]) {
+    let [a, b] = joint.pair.map(|node| node as usize);
+    forces[a] -= pushed;
+    forces[b] += pushed;
+}

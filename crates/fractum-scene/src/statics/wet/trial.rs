@@ -1,0 +1,352 @@
+//! What a step of solids and liquid is tried with: jumps, pressures, and what of it is unknown.
+
+use fractum_kernels::liquid::leaked;
+use fractum_math::{Mat3, Vec3};
+
+use super::compliance::{Compliance, spring_of};
+use super::{MORE, WetStep};
+use crate::interfaces::Interfaces;
+use crate::interfaces::joints::{Joint, JointPoint};
+use crate::liquid::network::{Network, Slit, WetPoint};
+use crate::liquid::{InjectionDrive, Liquid, LiquidState};
+use crate::scene::Scene;
+
+/// Pressure over the largest one that is rounding.
+const NOISE: f64 = 1e-9;
+/// No place.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Jumps and pressures at the end of a step, as far as they are known.
+pub(super) struct Trial {
+    /// Pairs whose jump is an unknown, ascending; and the place of each pair among them.
+    pub(super) active: Vec<u32>,
+    pub(super) place: Vec<u32>,
+    /// Jump of each pair [m].
+    pub(super) jump: Vec<Vec3>,
+    /// Pressure of each cell [Pa].
+    pub(super) pressure: Vec<f64>,
+    /// Cells that liquid may be in, ascending; and the place of each cell among them.
+    pub(super) play: Vec<u32>,
+    pub(super) cell_place: Vec<u32>,
+    /// Slits that let liquid through.
+    is_open: Vec<bool>,
+    /// The liquid at the start of the step.
+    pub(super) before: LiquidState,
+    /// Volume that comes to each cell by a rate, and goes into its walls, in the step [m³].
+    pub(super) comes: Vec<f64>,
+    pub(super) leaks: Vec<f64>,
+    /// Pressure that is prescribed, by cell [Pa]; not a number elsewhere.
+    pub(super) prescribed: Vec<f64>,
+}
+
+/// Flow along a way between two cells.
+pub(super) struct Way<'a> {
+    pub(super) slit: &'a Slit,
+    pub(super) cells: [u32; 2],
+    /// Flow from the first to the second per difference of pressure [m³/(Pa s)].
+    pub(super) conductance: f64,
+    /// Its slope by the aperture of each open corner [m²/(Pa s)].
+    pub(super) slope: f64,
+}
+
+/// Force on the second node of a pair beyond the springs, and how it grows with the jump.
+pub(super) fn more(interfaces: &Interfaces, joint: &Joint, jump: &Vec3) -> (Vec3, Mat3) {
+    let (mut force, mut slope) = (Vec3::zeros(), Mat3::zeros());
+    for point in &joint.points {
+        let (local, state) = (point.frame * jump, interfaces.state_of(point.at));
+        let traction = point.interface.load(local, &mut state.clone()).traction();
+        let spring = spring_of(point);
+        force += spring * jump - point.frame.tr_mul(&traction) * point.area;
+        let tangent = point.interface.jacobian(&local, state);
+        slope += spring - point.frame.transpose() * tangent * point.frame * point.area;
+    }
+    (force, slope)
+}
+
+fn liquid(scene: &Scene) -> &Liquid {
+    scene.optional.liquid.as_ref().expect("a scene that is solved with liquid has one")
+}
+
+impl Trial {
+    pub(super) fn begin(scene: &Scene, compliance: &Compliance, step: &WetStep) -> Self {
+        let own = liquid(scene);
+        let network = &own.network;
+        let (cells, joints) = (network.cells.len(), compliance.joints.len());
+        let before = own.state.clone();
+        let mut trial = Trial {
+            active: before.active.clone(),
+            place: vec![NONE; joints],
+            jump: compliance.jumps(&scene.solid.displacement),
+            pressure: before.pressure.clone(),
+            play: Vec::new(),
+            cell_place: vec![NONE; cells],
+            is_open: vec![false; network.slits.len()],
+            before,
+            comes: vec![0.0; cells],
+            leaks: vec![0.0; cells],
+            prescribed: vec![f64::NAN; cells],
+        };
+        if step.dt > 0.0 {
+            trial.drive(own, step);
+            trial.play = (0..cells as u32).filter(|&cell| trial.is_wet(cell)).collect();
+            let driven = own.injected_at.iter().flatten().map(|(cell, _)| *cell);
+            trial.play.extend(driven);
+        }
+        trial.open_slits(scene, compliance);
+        trial.number(network);
+        trial
+    }
+
+    /// What comes in and leaks in the step.
+    fn drive(&mut self, own: &Liquid, step: &WetStep) {
+        for (injection, cells) in own.settings.injections.iter().zip(&own.injected_at) {
+            for &(cell, share) in cells {
+                let place = &own.network.cells[cell as usize].place;
+                match &injection.drive {
+                    InjectionDrive::Rate(rate) => self.comes[cell as usize] += rate(step.time, place) * share * step.dt,
+                    InjectionDrive::Pressure(value) => {
+                        self.prescribed[cell as usize] = value(step.time, place).max(0.0)
+                    }
+                }
+            }
+        }
+        for (index, cell) in own.network.cells.iter().enumerate() {
+            let age = step.time - self.before.wet_since[index];
+            if age > 0.0 {
+                let all = cell.area * leaked(own.settings.leak_off, age);
+                let most = if self.before.pressure[index] > 0.0 { f64::INFINITY } else { self.before.amount[index] };
+                self.leaks[index] = (all - self.before.leaked[index]).clamp(0.0, most.max(0.0));
+            }
+        }
+    }
+
+    fn is_wet(&self, cell: u32) -> bool {
+        self.pressure[cell as usize] > 0.0 || self.before.amount[cell as usize] > 0.0
+    }
+
+    /// Opens the slits that liquid may enter by now: those that have begun to break at all corners, or let it through whole; whether there were any.
+    fn open_slits(&mut self, scene: &Scene, compliance: &Compliance) -> bool {
+        let network = &liquid(scene).network;
+        let lets_in = |point: &WetPoint| {
+            if point.is_permeable {
+                return true;
+            }
+            let joint = &compliance.joints[point.joint as usize];
+            let own = joint.points.iter().find(|own| own.at == point.at);
+            own.is_some_and(|own| {
+                let mut state = *scene.interfaces().state_of(own.at);
+                own.interface.load(own.frame * self.jump[point.joint as usize], &mut state);
+                state.residual < 1.0
+            })
+        };
+        let open: Vec<bool> = network.points.iter().map(lets_in).collect();
+        let mut more = false;
+        for (slit, is_open) in network.slits.iter().zip(&mut self.is_open).filter(|(_, is_open)| !**is_open) {
+            *is_open = slit.points.iter().flatten().all(|&point| open[point as usize]);
+            more |= *is_open;
+        }
+        more
+    }
+
+    /// Sorts what is unknown, the pairs of cells in play included; whether there are new ones.
+    fn number(&mut self, network: &Network) -> bool {
+        self.play.sort_unstable();
+        self.play.dedup();
+        let of = |cell: &u32| network.cells[*cell as usize].points.iter();
+        let joints = self.play.iter().flat_map(of).map(|&point| network.points[point as usize].joint);
+        self.active.extend(joints);
+        self.active.sort_unstable();
+        self.active.dedup();
+        let mut is_new = false;
+        for (place, &joint) in (0..).zip(&self.active) {
+            is_new |= std::mem::replace(&mut self.place[joint as usize], place) == NONE;
+        }
+        for (place, &cell) in (0..).zip(&self.play) {
+            is_new |= std::mem::replace(&mut self.cell_place[cell as usize], place) == NONE;
+        }
+        is_new
+    }
+
+    /// Makes unknown what turns out to break, to move or to get wet; whether there is any.
+    pub(super) fn grow(&mut self, scene: &Scene, compliance: &Compliance, step: &WetStep) -> bool {
+        let network = &liquid(scene).network;
+        let forces = self.forces(scene, compliance);
+        let mut largest = f64::MIN_POSITIVE;
+        let mut beyond = Vec::new();
+        for (index, joint) in (0u32..).zip(&compliance.joints) {
+            if self.place[index as usize] == NONE {
+                let pushed = forces.iter().map(|&(active, force)| compliance.between(index, active) * force);
+                self.jump[index as usize] = step.loaded[index as usize] + pushed.sum::<Vec3>();
+                let (force, _) = more(scene.interfaces(), joint, &self.jump[index as usize]);
+                beyond.push((index, force.norm()));
+            }
+            let spring = joint.points.iter().map(spring_of).sum::<Mat3>();
+            largest = largest.max((spring * self.jump[index as usize]).norm());
+        }
+        self.active.extend(beyond.iter().filter(|(_, force)| *force > MORE * largest).map(|(index, _)| *index));
+        let mut more_slits = false;
+        if step.dt > 0.0 {
+            more_slits = self.open_slits(scene, compliance);
+            let comes = |cell: &u32| self.comes[*cell as usize] > 0.0;
+            let wet = self.play.iter().copied().filter(|cell| self.is_wet(*cell) || comes(cell));
+            let open =
+                wet.flat_map(|cell| &network.slits_of[cell as usize]).filter(|&&slit| self.is_open[slit as usize]);
+            let reached = open.flat_map(|&slit| network.slits[slit as usize].ways.iter().flat_map(|way| way.0));
+            let reached: Vec<u32> = reached.collect();
+            self.play.extend(reached);
+        }
+        self.number(network) || more_slits
+    }
+
+    /// Forces between the nodes of unknown pairs beyond the springs [N].
+    pub(super) fn forces(&self, scene: &Scene, compliance: &Compliance) -> Vec<(u32, Vec3)> {
+        let network = &liquid(scene).network;
+        let force = |&index: &u32| {
+            let (force, _) = more(scene.interfaces(), &compliance.joints[index as usize], &self.jump[index as usize]);
+            (index, force + self.thrust(network, index))
+        };
+        self.active.iter().map(force).collect()
+    }
+
+    /// Force of the liquid on the second node of a pair [N].
+    pub(super) fn thrust(&self, network: &Network, joint: u32) -> Vec3 {
+        let of = |&point: &u32| {
+            let WetPoint { cell, normal, area, .. } = &network.points[point as usize];
+            normal * (area * self.pressure[*cell as usize])
+        };
+        network.points_of_joint[joint as usize].iter().map(of).sum()
+    }
+
+    /// Largest pressure of a cell [Pa].
+    pub(super) fn largest_pressure(&self) -> f64 {
+        self.pressure.iter().fold(0.0, |most, pressure| most.max(*pressure))
+    }
+
+    /// Largest normal traction that unknown pairs bear, or may bear [Pa].
+    pub(super) fn largest_traction(&self, scene: &Scene, compliance: &Compliance) -> f64 {
+        let of = |joint: &u32| {
+            let jump = self.jump[*joint as usize];
+            let bears = |own: &JointPoint| {
+                let traction =
+                    own.interface.load(own.frame * jump, &mut scene.interfaces().state_of(own.at).clone()).traction();
+                traction.x.abs().max(own.interface.law.tensile_strength)
+            };
+            compliance.joints[*joint as usize].points.iter().map(bears).fold(0.0, f64::max)
+        };
+        self.active.iter().map(of).fold(f64::MIN_POSITIVE, f64::max)
+    }
+
+    /// Takes away what rounding leaves of pressures that are none.
+    pub(super) fn drop_noise(&mut self) {
+        let noise = NOISE * self.largest_pressure();
+        for &cell in &self.play {
+            let pressure = &mut self.pressure[cell as usize];
+            *pressure = if *pressure < noise { 0.0 } else { *pressure };
+        }
+    }
+
+    /// Aperture of a point, negative where its rough walls are closed [m].
+    pub(super) fn aperture(&self, scene: &Scene, point: u32) -> f64 {
+        let own = liquid(scene);
+        let WetPoint { joint, normal, .. } = &own.network.points[point as usize];
+        own.settings.aperture + normal.dot(&self.jump[*joint as usize]) - self.before.closed[point as usize]
+    }
+
+    /// Room of a cell [m³].
+    pub(super) fn room(&self, scene: &Scene, cell: u32) -> f64 {
+        let network = &liquid(scene).network;
+        let of = |&point: &u32| network.points[point as usize].area * self.aperture(scene, point);
+        network.cells[cell as usize].points.iter().map(of).sum()
+    }
+
+    /// The ways between cells in play.
+    pub(super) fn ways<'a>(&'a self, scene: &'a Scene) -> impl Iterator<Item = Way<'a>> {
+        let own = liquid(scene);
+        let slits = own.network.slits.iter().zip(&self.is_open).filter(|(_, is_open)| **is_open);
+        slits.flat_map(move |(slit, _)| {
+            let in_play = |(cells, _): &&([u32; 2], f64)| cells.iter().all(|&c| self.cell_place[c as usize] != NONE);
+            let any = slit.ways.iter().any(|way| in_play(&way));
+            let mean = if any {
+                let open = slit.points.iter().flatten().map(|&point| self.aperture(scene, point).max(0.0));
+                open.sum::<f64>() / slit.corners as f64
+            } else {
+                0.0
+            };
+            let [flow, slope] = own.settings.law.transmissivity(mean);
+            let way = move |&(cells, ratio): &([u32; 2], f64)| {
+                let (conductance, slope) = (ratio * flow, ratio * slope / slit.corners as f64);
+                Way { slit, cells, conductance, slope }
+            };
+            slit.ways.iter().filter(in_play).map(way).collect::<Vec<_>>()
+        })
+    }
+
+    /// Volume that flows into each cell in the step [m³].
+    pub(super) fn inflow(&self, scene: &Scene, dt: f64) -> Vec<f64> {
+        let mut inflow = vec![0.0; self.pressure.len()];
+        for Way { cells: [a, b], conductance, .. } in self.ways(scene) {
+            let flow = dt * conductance * (self.pressure[a as usize] - self.pressure[b as usize]);
+            inflow[a as usize] -= flow;
+            inflow[b as usize] += flow;
+        }
+        inflow
+    }
+
+    /// The liquid at the end of the step.
+    pub(super) fn into_state(self, scene: &Scene, step: &WetStep) -> LiquidState {
+        let own = liquid(scene);
+        let mut state = self.before.clone();
+        if step.dt == 0.0 {
+            let closed = |point: &WetPoint| point.normal.dot(&self.jump[point.joint as usize]).min(0.0);
+            state.closed = own.network.points.iter().map(closed).collect();
+            state.has_begun = true;
+        }
+        let trial = Trial { before: LiquidState { closed: state.closed.clone(), ..self.before.clone() }, ..self };
+        state.aperture = (0..own.network.points.len() as u32).map(|point| trial.aperture(scene, point)).collect();
+        state.room = (0..own.network.cells.len() as u32).map(|cell| trial.room(scene, cell)).collect();
+        if step.dt > 0.0 {
+            trial.book(own, scene, step, &mut state);
+        }
+        state.active = trial.active;
+        state.pressure = trial.pressure;
+        state
+    }
+
+    /// Amounts and energies at the end of a step.
+    fn book(&self, own: &Liquid, scene: &Scene, step: &WetStep, state: &mut LiquidState) {
+        let (before, compressibility) = (&self.before, own.settings.compressibility);
+        let mean = |cell: usize| 0.5 * (before.pressure[cell] + self.pressure[cell]);
+        let inflow = self.inflow(scene, step.dt);
+        let mut put_in = vec![0.0; inflow.len()];
+        for &cell in &self.play {
+            let cell = cell as usize;
+            let pressure = self.pressure[cell];
+            let held = [(before.room[cell], before.pressure[cell]), (state.room[cell], pressure)];
+            let [was, is] = held.map(|(room, pressure)| room * compressibility * pressure);
+            let without = before.amount[cell] + inflow[cell] - self.leaks[cell];
+            put_in[cell] = self.comes[cell];
+            if !self.prescribed[cell].is_nan() {
+                put_in[cell] = state.room[cell] + is - without;
+            }
+            state.amount[cell] = without + put_in[cell];
+            state.leaked[cell] += self.leaks[cell];
+            if pressure > 0.0 && state.wet_since[cell].is_infinite() {
+                state.wet_since[cell] = step.time - 0.5 * step.dt;
+            }
+            let empty = [before.room[cell] + was - before.amount[cell], state.room[cell] + is - state.amount[cell]];
+            state.injected += put_in[cell];
+            state.supplied += mean(cell) * put_in[cell];
+            state.stored += mean(cell) * (is - was);
+            state.lost += mean(cell) * self.leaks[cell];
+            state.viscous += mean(cell) * (empty[0] - empty[1]);
+        }
+        for Way { cells, conductance, .. } in self.ways(scene) {
+            let [a, b] = cells.map(|cell| cell as usize);
+            let flow = step.dt * conductance * (self.pressure[a] - self.pressure[b]);
+            state.viscous += flow * (mean(a) - mean(b));
+        }
+        let rate =
+            |cells: &Vec<(u32, f64)>| cells.iter().map(|(cell, _)| put_in[*cell as usize]).sum::<f64>() / step.dt;
+        state.rates = own.injected_at.iter().map(rate).collect();
+    }
+}
