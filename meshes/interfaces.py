@@ -152,7 +152,7 @@ def main():
         [-y for y in reversed(across[1:])] + across,
         {"lower": lambda x, y: y < 0, "upper": lambda x, y: y > 0},
         {
-            "crack": lambda x, y: near(y, 0.0),
+            "crack": lambda x, y: near(y, 0.0) and x < 3.2 + 1e-9,
             "side": lambda x, y: near(x, 0.0),
             "top": lambda x, y: near(y, 40.0),
             "bottom": lambda x, y: near(y, -40.0),

@@ -130,6 +130,6 @@ pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {
         left: scene.removals.left.clone(),
         conditions: ConditionsState::of(&scene.loads, &scene.optional.surface_supports),
         interfaces: (!scene.interfaces().is_empty()).then(|| scene.interfaces().state()),
-        liquid: scene.liquid().map(Liquid::state),
+        liquid: scene.optional.liquid.as_deref().map(Liquid::state),
     }
 }

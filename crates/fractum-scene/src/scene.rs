@@ -136,11 +136,6 @@ impl Scene {
         &self.optional.interfaces
     }
 
-    /// Liquid in interfaces.
-    pub fn liquid(&self) -> Option<&Liquid> {
-        self.optional.liquid.as_deref()
-    }
-
     /// Gas in holes and cracks.
     pub fn gas(&self) -> Option<&Gas> {
         self.loads.gas()

@@ -9,7 +9,6 @@ use crate::contacts::{Contacts, NodesOnShape, OverlapWith};
 use crate::coupling::{Apart, Attachment, Debris, Ties};
 use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
-use crate::liquid::Liquid;
 use crate::scene::{Optional, Removals, Scene, SceneSettings};
 use crate::stable_step::{find_first_step, next_dt, prepare_shapes, update_wall_frequency};
 
@@ -93,12 +92,6 @@ impl Scene {
         self.debris.apart = Apart::new(interfaces.doubled());
         self.optional.interfaces = interfaces;
         self.clock = Clock::new(next_dt(&self, 0.0));
-        self
-    }
-
-    /// The same scene with liquid in its interfaces, before its first step.
-    pub fn with_liquid(mut self, liquid: Liquid) -> Self {
-        self.optional.liquid = Some(Box::new(liquid));
         self
     }
 

@@ -28,7 +28,7 @@ use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
 use fractum_prepare::Cache;
 use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings};
-use fractum_scene::{BondedBody, Domain, GasMeasure, Scene};
+use fractum_scene::{BondedBody, Domain, GasMeasure, Scene, liquid_of};
 
 use self::cost::Cost;
 pub use self::estimate::Estimate;
@@ -278,7 +278,7 @@ impl Plan {
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
-        if let Some(liquid) = scene.liquid() {
+        if let Some(liquid) = liquid_of(scene) {
             let places = case.flows.liquid.as_ref().map_or(0, |liquid| liquid.injections.len());
             let words = if places == 1 { "injection" } else { "injections" };
             self.add("liquid", format!("{places} {words} into {} cells of interfaces", liquid.cell_count()));

@@ -114,7 +114,10 @@ fn is_of_the_field(case: &Case) -> bool {
         let loads = stage.loads.iter().any(|load| heavy(&load.kind));
         loads || stage.supports.iter().any(|support| support.surface.is_some())
     };
-    case.flows.gas.is_some() || case.in_situ.is_some() || stages(case).any(|(stage, _)| of_stage(stage))
+    case.flows.gas.is_some()
+        || case.flows.liquid.is_some()
+        || case.in_situ.is_some()
+        || stages(case).any(|(stage, _)| of_stage(stage))
 }
 
 /// Solids so far from the origin that their coordinates have few bits left for displacements.

@@ -93,5 +93,5 @@ pub(super) fn with_liquid(context: &mut Context<'_>, scene: Scene, numbering: &N
             context.error(&place, found, "nodes inside of such an interface; its tips have no room");
         }
     }
-    scene.with_liquid(built)
+    fractum_scene::with_liquid(scene, built)
 }

@@ -1,6 +1,6 @@
 //! Something about the liquid in interfaces.
 
-use fractum_scene::{LiquidMeasure, NeededPoints, Probe, ProbeNeeds, ProbedScene, Scene};
+use fractum_scene::{LiquidMeasure, NeededPoints, Probe, ProbeNeeds, ProbedScene, Scene, liquid_of};
 
 use super::Measure;
 use super::scenery::Scenery;
@@ -51,7 +51,7 @@ struct OfLiquid(LiquidMeasure);
 
 impl Probe for OfLiquid {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        probed.scene.liquid().map_or(f64::NAN, |liquid| liquid.measure(self.0))
+        liquid_of(probed.scene).map_or(f64::NAN, |liquid| liquid.measure(self.0))
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

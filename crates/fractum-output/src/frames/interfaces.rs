@@ -1,7 +1,7 @@
 //! Interfaces between elements as faces for ParaView.
 
 use fractum_math::Vec3;
-use fractum_scene::{FaceReading, InterfaceFace, LiquidReading, Scene};
+use fractum_scene::{FaceReading, InterfaceFace, LiquidReading, Scene, liquid_of};
 use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
 
 use crate::OutputError;
@@ -36,7 +36,7 @@ pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
     let (normal, shear) = (column(|is| is.normal_traction), column(|is| is.shear_traction));
     let slip: Vec<[f64; 3]> = faces.iter().map(|(_, is)| <[f64; 3]>::from(is.slip as Vec3)).collect();
     let kinds: Vec<i32> = faces.iter().map(|(face, _)| face.kind as i32).collect();
-    let liquid = |face: usize| scene.liquid().and_then(|liquid| liquid.reading(interfaces, face)).unwrap_or_default();
+    let liquid = |face: usize| liquid_of(scene).and_then(|liquid| liquid.reading(interfaces, face)).unwrap_or_default();
     let wet: Vec<LiquidReading> = readings.iter().map(|(face, _)| liquid(*face)).collect();
     let of_liquid = [
         ("liquid_pressure", (|is| is.pressure) as fn(&LiquidReading) -> f64),
@@ -52,7 +52,7 @@ pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
         Field::scalar("strength_left", &residual),
         Field::integer("interface", &kinds),
     ];
-    if scene.liquid().is_some() {
+    if liquid_of(scene).is_some() {
         cell_data.extend(of_liquid.iter().map(|(name, values)| Field::scalar(name, values)));
     }
     let point_data = [Field::vector("displacement", &displacement)];

@@ -168,7 +168,7 @@ impl StaticSolver {
     pub fn new(scene: &Scene, settings: StaticSettings) -> Result<Self, SparseError> {
         let solid = &scene.solid;
         let elastic = !solid.has_damage();
-        let joined = if scene.liquid().is_some() { wet::pairs(scene) } else { Vec::new() };
+        let joined = if scene.optional.liquid.is_some() { wet::pairs(scene) } else { Vec::new() };
         let system = settings.lay_out(scene, &joined)?;
         let zero = vec![Vec3::zeros(); solid.reference.len()];
         Ok(StaticSolver {
@@ -270,7 +270,7 @@ impl StaticSolver {
     /// # Errors
     /// [`StepError`] if there is none, or none that the iteration finds.
     pub fn step(&mut self, scene: &mut Scene) -> Result<StepReport, StepError> {
-        if scene.liquid().is_some() {
+        if scene.optional.liquid.is_some() {
             return self.step_wet(scene);
         }
         motion::wake_phase_fields(&mut scene.solid);

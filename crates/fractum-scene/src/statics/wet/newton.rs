@@ -10,9 +10,10 @@ use crate::error::StepError;
 use crate::liquid::network::WetPoint;
 use crate::scene::Scene;
 
-/// Iterations at most, and those with whole steps; then they are halves, and quarters for the last third.
+/// Iterations at most, and those in which the residual may grow; the part of a way that is gone in any case.
 const MOST: usize = 60;
-const WHOLE: usize = 20;
+const FREE: usize = 8;
+const LEAST_PART: f64 = 0.02;
 /// Change of a pressure in an iteration at most, over the largest pressure and traction there is.
 const MOST_PRESSURE: f64 = 1.0;
 /// Change over the largest value below which the solution is found, and below which it is if it does not become smaller any more: rounding.
@@ -24,6 +25,8 @@ const ROUNDING: f64 = 1e-6;
 pub(super) struct Newton {
     matrix: Dense,
     right: Vec<f64>,
+    /// Way to the solution of the linear system.
+    way: Vec<f64>,
 }
 
 /// Places of the unknowns.
@@ -46,64 +49,68 @@ impl Newton {
         stop: fn() -> bool,
     ) -> Result<Option<usize>, StepError> {
         let places = Places::of(scene, compliance, trial);
-        let mut before = f64::INFINITY;
         let bears = trial.largest_traction(scene, compliance);
+        self.assemble(scene, compliance, step, trial, &places);
+        if self.right.is_empty() {
+            return Ok(Some(0));
+        }
+        let (mut missing, mut before) = (norm(&self.right), f64::INFINITY);
         for iteration in 1..=MOST {
             if stop() {
                 return Err(StepError::Interrupted { step: scene.clock.step, time: scene.clock.time });
             }
-            self.assemble(scene, compliance, step, trial, &places);
-            if self.right.is_empty() {
-                return Ok(Some(0));
-            }
             if !self.matrix.solve(&mut self.right) {
                 return Ok(None);
             }
-            let most = MOST_PRESSURE * (trial.largest_pressure() + bears);
-            let whole = if iteration <= WHOLE {
-                1.0
-            } else if iteration <= 2 * WHOLE {
-                0.5
-            } else {
-                0.25
-            };
-            let part = self.within(&places, most, whole);
-            let change = self.advance(trial, &places, part);
+            self.way.clone_from(&self.right);
+            let mut part = self.within(&places, MOST_PRESSURE * (trial.largest_pressure() + bears));
+            let change = self.change(trial, &places);
             if part == 1.0 && (change <= SETTLED || change <= ROUNDING && change >= before) {
+                self.advance(trial, &places, 1.0);
                 trial.drop_noise();
                 return Ok(Some(iteration));
             }
             before = change;
+            loop {
+                self.advance(trial, &places, part);
+                self.assemble(scene, compliance, step, trial, &places);
+                let left = norm(&self.right);
+                // Where sides open and close by turns, and softening begins and ends, no step may lead away from the solution.
+                if iteration <= FREE || left < missing || part < LEAST_PART {
+                    missing = left;
+                    break;
+                }
+                self.advance(trial, &places, -part);
+                part *= 0.5;
+            }
         }
         Ok(None)
     }
 
     /// Part of the way to the solution on which no pressure changes by more than `most`: where sides that are pressed together are about to part, the way
     /// that their stiffness tells is far too long.
-    fn within(&self, places: &Places, most: f64, part: f64) -> f64 {
-        let change =
-            self.right[places.jumps..].iter().fold(0.0f64, |largest, way| largest.max(way.abs())) / places.scale;
-        if part * change > most { most / change } else { part }
+    fn within(&self, places: &Places, most: f64) -> f64 {
+        let change = largest(&self.way[places.jumps..]) / places.scale;
+        if change > most { most / change } else { 1.0 }
     }
 
-    /// Goes a part of the way to the solution of the linear system; the change over the largest value.
-    fn advance(&self, trial: &mut Trial, places: &Places, part: f64) -> f64 {
-        let (mut change, mut largest) = ([0.0f64; 2], [f64::MIN_POSITIVE; 2]);
-        for (&joint, way) in trial.active.iter().zip(self.right[..places.jumps].chunks_exact(places.axes)) {
-            let jump = &mut trial.jump[joint as usize];
-            for (axis, way) in way.iter().enumerate() {
-                jump[axis] -= part * way;
-                change[0] = change[0].max(way.abs());
-                largest[0] = largest[0].max(jump[axis].abs());
-            }
+    /// Change of jumps and of pressures on the whole way, over the largest of each; the larger of both.
+    fn change(&self, trial: &Trial, places: &Places) -> f64 {
+        let jump =
+            trial.active.iter().map(|&joint| trial.jump[joint as usize].amax()).fold(f64::MIN_POSITIVE, f64::max);
+        let pressure = trial.largest_pressure().max(f64::MIN_POSITIVE);
+        let (jumps, pressures) = self.way.split_at(places.jumps);
+        (largest(jumps) / jump).max(largest(pressures) / places.scale / pressure)
+    }
+
+    /// Goes a part of the way to the solution of the linear system.
+    fn advance(&self, trial: &mut Trial, places: &Places, part: f64) {
+        for (&joint, way) in trial.active.iter().zip(self.way[..places.jumps].chunks_exact(places.axes)) {
+            way.iter().enumerate().for_each(|(axis, way)| trial.jump[joint as usize][axis] -= part * way);
         }
-        for (&cell, way) in trial.play.iter().zip(&self.right[places.jumps..]) {
-            let pressure = &mut trial.pressure[cell as usize];
-            *pressure -= part * way / places.scale;
-            change[1] = change[1].max(way.abs() / places.scale);
-            largest[1] = largest[1].max(pressure.abs());
+        for (&cell, way) in trial.play.iter().zip(&self.way[places.jumps..]) {
+            trial.pressure[cell as usize] -= part * way / places.scale;
         }
-        (0..2).map(|kind| change[kind] / largest[kind]).fold(0.0, f64::max)
     }
 
     /// Residuals, and their derivatives.
@@ -188,7 +195,8 @@ impl Newton {
                 continue;
             }
             let room = trial.room(scene, cell);
-            let amount = trial.before.amount[index] + inflow[index] + trial.comes[index] - trial.leaks[index];
+            let comes = trial.before.amount[index] + inflow[index] + trial.comes[index];
+            let amount = comes - trial.taken(index, comes);
             let give = give(compliance, network.cells[index].points.iter().map(|&p| &network.points[p as usize]));
             let missing = (room * (1.0 + compressibility * pressure) - amount) / give;
             // A full cell stays full while it pushes: how its room grows, it cannot know before it opens.
@@ -236,6 +244,14 @@ impl Newton {
             (0..places.axes).for_each(|a| self.matrix.add(row, places.axes * place as usize + a, by[a]));
         }
     }
+}
+
+fn norm(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum::<f64>().sqrt()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 /// Volume that a cell gains per pressure in it alone [m³/Pa].

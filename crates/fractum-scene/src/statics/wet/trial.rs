@@ -114,8 +114,7 @@ impl Trial {
             let age = step.time - self.before.wet_since[index];
             if age > 0.0 {
                 let all = cell.area * leaked(own.settings.leak_off, age);
-                let most = if self.before.pressure[index] > 0.0 { f64::INFINITY } else { self.before.amount[index] };
-                self.leaks[index] = (all - self.before.leaked[index]).clamp(0.0, most.max(0.0));
+                self.leaks[index] = (all - self.before.leaked[index]).max(0.0);
             }
         }
     }
@@ -236,6 +235,13 @@ impl Trial {
         self.active.iter().map(of).fold(f64::MIN_POSITIVE, f64::max)
     }
 
+    /// What the walls of a cell take in the step: all that there is, if that is less than they could [m³].
+    ///
+    /// - `comes`: what is there without them
+    pub(super) fn taken(&self, cell: usize, comes: f64) -> f64 {
+        if self.pressure[cell] > 0.0 { self.leaks[cell] } else { self.leaks[cell].min(comes.max(0.0)) }
+    }
+
     /// Takes away what rounding leaves of pressures that are none.
     pub(super) fn drop_noise(&mut self) {
         let noise = NOISE * self.largest_pressure();
@@ -323,13 +329,15 @@ impl Trial {
             let pressure = self.pressure[cell];
             let held = [(before.room[cell], before.pressure[cell]), (state.room[cell], pressure)];
             let [was, is] = held.map(|(room, pressure)| room * compressibility * pressure);
-            let without = before.amount[cell] + inflow[cell] - self.leaks[cell];
+            let comes = before.amount[cell] + inflow[cell];
+            let taken = self.taken(cell, comes + self.comes[cell]);
+            let without = comes - taken;
             put_in[cell] = self.comes[cell];
             if !self.prescribed[cell].is_nan() {
                 put_in[cell] = state.room[cell] + is - without;
             }
             state.amount[cell] = without + put_in[cell];
-            state.leaked[cell] += self.leaks[cell];
+            state.leaked[cell] += taken;
             if pressure > 0.0 && state.wet_since[cell].is_infinite() {
                 state.wet_since[cell] = step.time - 0.5 * step.dt;
             }
@@ -337,7 +345,7 @@ impl Trial {
             state.injected += put_in[cell];
             state.supplied += mean(cell) * put_in[cell];
             state.stored += mean(cell) * (is - was);
-            state.lost += mean(cell) * self.leaks[cell];
+            state.lost += mean(cell) * taken;
             state.viscous += mean(cell) * (empty[0] - empty[1]);
         }
         for Way { cells, conductance, .. } in self.ways(scene) {
