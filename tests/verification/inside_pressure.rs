@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_fem::Elastic;
+use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
 use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
@@ -49,8 +49,11 @@ fn a_crack_under_pressure_opens_as_sneddon_says() {
         let h = a / f64::from(elements);
         let elastic = Elastic { poisson_ratio: nu, ..CONCRETE };
         let places = graded(h, 1.5 * a, 20.0 * a, 1.25);
-        let slab =
-            Slab { places: [places.clone(), mirrored(&graded(h, 4.0 * h, 20.0 * a, 1.25)), Vec::new()], elastic };
+        let slab = Slab {
+            places: [places.clone(), mirrored(&graded(h, 4.0 * h, 20.0 * a, 1.25)), Vec::new()],
+            elastic,
+            formulation: Formulation::Smoothed,
+        };
         let stiffness = 100.0 * elastic.young_modulus / h;
         let kinds = vec![kind(JOINT, stiffness), kind(STRONG, stiffness)];
         let (scene, _) = slab.scene(
@@ -89,7 +92,8 @@ fn a_crack_under_pressure_opens_as_sneddon_says() {
 /// Two blocks with a joint, pressed together and sheared by their ends.
 fn sheared(pressed: f64, slid: impl Fn(f64) -> f64 + Send + Sync + 'static, end: f64, unit: f64) -> Scene {
     let places = |count: usize, from: f64, step: f64| (0..=count).map(|i| (from + step * i as f64) * unit).collect();
-    let slab = Slab { places: [places(6, 0.0, 0.1), places(8, -0.4, 0.1), Vec::new()], elastic: CONCRETE };
+    let places = [places(6, 0.0, 0.1), places(8, -0.4, 0.1), Vec::new()];
+    let slab = Slab { places, elastic: CONCRETE, formulation: Formulation::Standard };
     let slid = Arc::new(slid);
     let (scene, _) = slab.scene(
         end,

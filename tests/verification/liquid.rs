@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use fractum_fem::Elastic;
+use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
 use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
@@ -68,7 +68,7 @@ impl Pumped {
         let along = graded(size, 1.3 * length, far, self.growth);
         let across = mirrored(&graded(size, 3.0 * size, far, self.growth));
         let third = if self.is_disc { along.clone() } else { Vec::new() };
-        let slab = Slab { places: [along, across, third], elastic };
+        let slab = Slab { places: [along, across, third], elastic, formulation: Formulation::Standard };
         let stiffness = self.firmness * elastic.young_modulus / size;
         let kinds = vec![InterfaceKind { name: "joint".to_owned(), law: self.law, stiffness: Some([stiffness; 2]) }];
         let near = 1e-9 * far;
@@ -278,19 +278,21 @@ fn a_crack_that_toughness_resists_follows_its_asymptote() {
     }
 }
 
-/// A disc in space in both regimes.
+/// A quarter of a disc in space.
+const DISC: Pumped = Pumped { is_disc: true, far: 6.0, growth: 1.5, steps: 16.0, ..VISCOUS };
+
+/// Ten elements along the radius, and two in the process zone: the pressure is the farthest off.
 #[test]
-fn a_disc_follows_both_asymptotes() {
-    let disc = Pumped { is_disc: true, far: 6.0, growth: 1.5, steps: 40.0, ..VISCOUS };
-    let tough = Pumped { law: BONDED, viscosity: 1e-5, rate: 4e-6, end: 100.0, stress: 0.0, size: 0.125, ..disc };
-    let tough = Pumped { length: 1.5, ..tough };
-    println!("{:?}", tough.of_toughness(tough.end));
-    let (_, found) = errors(&tough, Pumped::of_toughness);
-    println!("{found:?}");
-    let viscous = Pumped { rate: 2e-4, size: 0.15, length: 1.4, ..disc };
-    println!("{:?}", viscous.of_viscosity(viscous.end));
-    let (_, found) = errors(&viscous, Pumped::of_viscosity);
-    within(found, [0.1; 3]);
+fn a_disc_that_toughness_resists_follows_its_asymptote() {
+    let tough = Pumped { law: BONDED, viscosity: 1e-5, rate: 4e-6, end: 60.0, stress: 0.0, size: 0.125, ..DISC };
+    let (_, found) = errors(&Pumped { length: 1.2, ..tough }, Pumped::of_toughness);
+    within(found, [0.1, 0.12, 0.05]);
+}
+
+#[test]
+fn a_disc_that_viscosity_resists_follows_its_asymptote() {
+    let (_, found) = errors(&Pumped { rate: 2e-4, end: 6.0, size: 0.14, length: 1.3, ..DISC }, Pumped::of_viscosity);
+    within(found, [0.1, 0.1, 0.1]);
 }
 
 /// Without stress the liquid lags behind the tip of its crack: ahead of the front the crack is open and dry.

@@ -1,6 +1,6 @@
 //! Slabs in two halves that an interface joins along y = 0, with elements of any size along each axis.
 
-use fractum_fem::{Body, Elastic, ElementKind, Solid};
+use fractum_fem::{Body, Elastic, ElementKind, Formulation, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::generate::{structured_box, structured_rectangle};
 use fractum_mesh::{CutAlong, Group, Mesh};
@@ -16,6 +16,7 @@ use fractum_tests::settings;
 pub(crate) struct Slab {
     pub(crate) places: [Vec<f64>; 3],
     pub(crate) elastic: Elastic,
+    pub(crate) formulation: Formulation,
 }
 
 /// Coordinates from 0 to `end`: steps of one size up to `even`, then growing by a ratio.
@@ -90,7 +91,8 @@ impl Slab {
             true => (ElementKind::T3, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect()),
             false => (ElementKind::T4, mesh.tetrahedra.clone()),
         };
-        let body = Body { thickness: 1.0, ..Body::new("slab", kind, elements, self.elastic) };
+        let body = Body::new("slab", kind, elements, self.elastic);
+        let body = Body { thickness: 1.0, formulation: self.formulation, ..body };
         let solid = Solid::new(mesh.nodes.clone(), vec![body]).unwrap();
         let face = |face: &fractum_mesh::CutFace| {
             let corners = face.sides[0].map(|node| solid.reference[node as usize]);
