@@ -111,8 +111,9 @@ impl Trial {
             }
         }
         for (index, cell) in own.network.cells.iter().enumerate() {
-            let age = step.time - self.before.wet_since[index];
-            if age > 0.0 {
+            // What liquid reaches first in this step, it reaches half-way on the average.
+            let age = (step.time - self.before.wet_since[index]).max(0.5 * step.dt);
+            if own.settings.leak_off > 0.0 {
                 let all = cell.area * leaked(own.settings.leak_off, age);
                 self.leaks[index] = (all - self.before.leaked[index]).max(0.0);
             }
@@ -338,7 +339,7 @@ impl Trial {
             }
             state.amount[cell] = without + put_in[cell];
             state.leaked[cell] += taken;
-            if pressure > 0.0 && state.wet_since[cell].is_infinite() {
+            if (pressure > 0.0 || comes + self.comes[cell] > 0.0) && state.wet_since[cell].is_infinite() {
                 state.wet_since[cell] = step.time - 0.5 * step.dt;
             }
             let empty = [before.room[cell] + was - before.amount[cell], state.room[cell] + is - state.amount[cell]];
