@@ -76,6 +76,8 @@ pub enum KeyKind {
     RateCurve,
     /// Rows of group, delay and pulse, or a file of them.
     Firing,
+    /// Rows of joints, or a file of them.
+    JointRows,
 }
 
 impl KeyKind {
@@ -110,6 +112,9 @@ impl KeyKind {
                 "an expression of rate, pairs such as [[\"1e-6 1/s\", 1], [\"10 1/s\", 1.4]], or the name of a standard"
                     .to_string()
             }
+            Self::JointRows => {
+                "rows such as [[\"0 m\", \"0 m\", \"2 m\", \"1 m\"]], or a CSV file of such rows".to_string()
+            }
             Self::Firing => {
                 "rows such as [[\"hole-1\", \"25 ms\", \"contour\"]], or a CSV file of such rows".to_string()
             }
@@ -142,7 +147,7 @@ impl KeyKind {
             Self::Names => "list of names".to_string(),
             Self::AllOrNames => "true, list of names".to_string(),
             Self::RateCurve => "function of rate".to_string(),
-            Self::Firing => "list of rows, text".to_string(),
+            Self::Firing | Self::JointRows => "list of rows, text".to_string(),
         }
     }
 }

@@ -81,6 +81,12 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
             });
             json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": row, "minItems": 1 }] })
         }
+        KeyKind::JointRows => {
+            let row = json!({
+                "type": "array", "items": { "type": ["number", "string"] }, "minItems": 4, "maxItems": 6
+            });
+            json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": row, "minItems": 1 }] })
+        }
         KeyKind::RateCurve => {
             let pair = json!({
                 "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2

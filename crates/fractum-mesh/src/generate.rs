@@ -1,7 +1,8 @@
 //! Meshes that the program makes itself: structured boxes and rectangles, and plane bodies within outlines.
 
-mod delaunay;
-mod outline;
+pub(crate) mod delaunay;
+pub(crate) mod outline;
+pub(crate) mod squares;
 
 pub use outline::{Curve, Outline, Piece, fill};
 

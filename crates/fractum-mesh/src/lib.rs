@@ -38,6 +38,7 @@ pub mod generate;
 mod gmsh;
 mod hints;
 mod join;
+mod joints;
 mod mesh;
 mod neighbour;
 pub mod quality;
@@ -53,6 +54,10 @@ pub use fractum_math::Vec3;
 pub use gmsh::{MshFormat, partitions, read_msh, write_msh};
 pub use hints::hints;
 pub use join::{JoinError, joined};
+pub use joints::{
+    Cutting, Disc, Fate, Grains, GrainsMade, JointGroup, JointSet, NetworkError, Orientation, Trace, mean_dip,
+    mean_direction, normal_of,
+};
 pub use mesh::{CutFace, Group, Mesh, WholeMesh};
 pub use neighbour::{halved, scrambled};
 pub use tagged::{MeshError, Place, Problem};

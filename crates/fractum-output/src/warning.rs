@@ -93,6 +93,8 @@ codes! {
     UndampedSliding = "undamped-sliding",
     /// Elements close to the length at which softening snaps back.
     CoarseMesh = "coarse-mesh",
+    /// Joints of a set that were not cut.
+    JointsLeftOut = "joints-left-out",
     /// A length of the phase field below that of the elements.
     PhaseFieldLength = "phase-field-length",
     /// A strength that was lowered where elements are too long.

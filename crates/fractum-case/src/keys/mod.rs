@@ -8,6 +8,7 @@ mod gas;
 mod heat;
 mod interfaces;
 mod liquid;
+mod network;
 mod output;
 mod probes;
 mod solver;
@@ -37,7 +38,7 @@ pub fn keys() -> &'static [KeyDoc] {
         let field = |field: &OutputField| key(field.path(), KeyKind::Flag, "false", field.doc());
         let fields: Vec<KeyDoc> = OutputField::ALL.iter().map(field).collect();
         let output = [output::FIRST, &fields, output::LAST].concat();
-        let before = [bodies::KEYS, interfaces::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS].concat();
+        let before = [bodies::KEYS, interfaces::KEYS, network::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS].concat();
         let before = [before, liquid::KEYS.to_vec(), solver::KEYS.to_vec()].concat();
         [before, probes, output].concat()
     });

@@ -11,6 +11,7 @@ mod interface;
 mod liquid;
 mod loose;
 mod material;
+mod network;
 mod output;
 mod plot;
 mod ppv;
@@ -39,6 +40,7 @@ pub use interface::{Interface, InterfaceFaces};
 pub use liquid::{Liquid, LiquidInjection};
 pub use loose::{LooseBody, LooseSource};
 pub use material::{Beds, Damage, Material};
+pub use network::{GrainsWithin, JointSource, Joints, Network};
 pub use output::Output;
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
@@ -138,6 +140,8 @@ pub struct MeshSource {
     pub halvings: u32,
     /// Random moves of inner nodes: share of the shortest edge [-], and seed.
     pub scramble: Option<(f64, u64)>,
+    /// Joints and grains, cut after that.
+    pub network: Network,
 }
 
 /// A solid body by its name, with the group of its elements.

@@ -19,6 +19,7 @@ mod liquid;
 mod loose;
 mod materials;
 mod names;
+mod network;
 mod output;
 mod parameters;
 mod plots;
@@ -214,6 +215,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         materials: &materials,
         bodies: bodies.as_deref(),
         solver: solver.as_ref(),
+        mesh: mesh.as_ref().and_then(Option::as_ref),
         staged: !stage.is_empty(),
     };
     let verify = verify::read(&table, &around, expect.as_deref());
@@ -278,6 +280,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     let parts = table
         .has("parts")
         .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
+    let network = network::read(&table, unit);
     table.finish("here");
     let Spanned { value, place } = file?;
     let file = Spanned::new(table_path(root.reader, &value), place);
@@ -287,7 +290,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     };
     let whole = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.group.value == WHOLE_MESH);
     let is_one_body = bodies.is_some_and(|bodies| bodies.iter().any(whole));
-    Some(Some(MeshSource { file, parts, unit, is_one_body, join: join?, halvings, scramble }))
+    Some(Some(MeshSource { file, parts, unit, is_one_body, join: join?, halvings, scramble, network: network? }))
 }
 
 /// The solids whose coincident nodes become one: nothing where none are joined.

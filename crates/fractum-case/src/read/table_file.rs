@@ -26,6 +26,33 @@ pub(super) fn text(reader: &Reader, name: &Spanned<String>) -> Option<(String, S
     Some((file, text))
 }
 
+/// Joints of a file.
+pub(super) struct JointRows {
+    /// The file.
+    pub(super) place: Place,
+    /// Lines with their numbers.
+    pub(super) rows: Vec<(u32, Vec<f64>)>,
+}
+
+/// Rows of four or of six numbers, all alike.
+pub(super) fn joints(reader: &Reader, name: &Spanned<String>) -> Option<JointRows> {
+    let (file, text) = text(reader, name)?;
+    let place = Place { file: file.clone(), line: 1, column: 1, key: name.place.key.clone() };
+    let mut line_of = rows(&text).map(|(line, ..)| line);
+    let take = |taken: &[Vec<f64>], row: &str, numbers: &[Option<f64>]| {
+        let count = taken.first().map_or(numbers.len(), Vec::len);
+        let known = numbers.iter().copied().collect::<Option<Vec<f64>>>();
+        match known.filter(|numbers| numbers.iter().all(|number| number.is_finite())) {
+            Some(numbers) if numbers.len() == count && (count == 4 || count == 6) => Ok(numbers),
+            Some(numbers) => Err(format!("{} numbers; expected 4 of a trace, or 6 of a disc", numbers.len())),
+            None => Err(format!("\"{row}\" is not a row of numbers")),
+        }
+    };
+    let taken = collect(&text, "joints", take, |line, message| report(reader, name, &file, (line, message)))?;
+    let rows = taken.into_iter().filter_map(|row| Some((line_of.next()?, row))).collect();
+    Some(JointRows { place, rows })
+}
+
 fn bytes(reader: &Reader, name: &Spanned<String>) -> Option<(String, Vec<u8>)> {
     let path = table_path(reader, &name.value);
     let bytes = read_file(&path).map_err(|error| {

@@ -2,8 +2,8 @@
 
 use super::{names, parameters};
 use crate::model::{
-    Body, BodyKind, Expect, LooseSource, Material, NEIGHBOURS, Neighbour, PackingSource, Promise, Solver, SolverKind,
-    Verify,
+    Body, BodyKind, Expect, JointSource, LooseSource, Material, MeshSource, NEIGHBOURS, Neighbour, PackingSource,
+    Promise, Solver, SolverKind, Verify,
 };
 use crate::reader::Table;
 use crate::tree::{Node, Value};
@@ -30,6 +30,7 @@ pub(super) struct Around<'a> {
     pub(super) materials: &'a [(String, Option<Material>)],
     pub(super) bodies: Option<&'a [Body]>,
     pub(super) solver: Option<&'a Solver>,
+    pub(super) mesh: Option<&'a MeshSource>,
     pub(super) staged: bool,
 }
 
@@ -174,6 +175,16 @@ impl Around<'_> {
                 BodyKind::Solid(_) | BodyKind::Rigid(_) => None,
             };
             set.extend(seed.map(|seed| (format!("bodies[{index}].seed"), (seed + more).to_string())));
+        }
+        if let Some(network) = self.mesh.map(|mesh| &mesh.network) {
+            for (index, joints) in network.joints.iter().enumerate() {
+                if let JointSource::Set(known) = &joints.source {
+                    set.push((format!("mesh.joints[{index}].seed"), (known.seed + more).to_string()));
+                }
+            }
+            set.extend(
+                network.grains.iter().map(|own| ("mesh.grains.seed".to_owned(), (own.grains.seed + more).to_string())),
+            );
         }
         for material in self.materials.iter().filter_map(|(_, material)| material.as_ref()) {
             let scatter = material.damage.as_ref().and_then(|damage| damage.value.scatter.as_ref());

@@ -5,23 +5,18 @@ const NONE: u32 = u32::MAX;
 
 /// A triangle, counter-clockwise, and its neighbours opposite to each node.
 #[derive(Clone, Copy)]
-pub(super) struct Triangle {
-    pub(super) nodes: [u32; 3],
-    pub(super) next: [u32; 3],
+pub(crate) struct Triangle {
+    pub(crate) nodes: [u32; 3],
+    pub(crate) next: [u32; 3],
 }
 
 /// The triangles of some points. The last three nodes are those of a triangle around all points.
 ///
 /// Points must be in no special position: no four on a circle, to the rounding of coordinates.
-pub(super) fn triangulate(points: &[[f64; 2]]) -> Vec<Triangle> {
+pub(crate) fn triangulate(points: &[[f64; 2]]) -> Vec<Triangle> {
     let count = points.len() as u32;
-    let [low, high] = [f64::min, f64::max].map(|f| [0, 1].map(|axis| points.iter().map(|p| p[axis]).fold(f64::NAN, f)));
-    let centre = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
-    let far = 20.0 * (high[0] - low[0]).max(high[1] - low[1]);
-    let corners = [[-1.0, -0.9], [1.1, -1.0], [0.1, 1.2]];
-    let around = corners.map(|corner| [centre[0] + far * corner[0], centre[1] + far * corner[1]]);
     let mut mesh = Growing {
-        points: [points, &around].concat(),
+        points: [points, &around(points)].concat(),
         triangles: vec![Triangle { nodes: [count, count + 1, count + 2], next: [NONE; 3] }],
         first: vec![NONE; points.len() + 3],
         seen: vec![NONE],
@@ -29,6 +24,15 @@ pub(super) fn triangulate(points: &[[f64; 2]]) -> Vec<Triangle> {
     };
     (0..count).for_each(|point| mesh.insert(point));
     mesh.triangles
+}
+
+/// The triangle around some points.
+pub(crate) fn around(points: &[[f64; 2]]) -> [[f64; 2]; 3] {
+    let [low, high] = [f64::min, f64::max].map(|f| [0, 1].map(|axis| points.iter().map(|p| p[axis]).fold(f64::NAN, f)));
+    let centre = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
+    let far = 20.0 * (high[0] - low[0]).max(high[1] - low[1]);
+    let corners = [[-1.0, -0.9], [1.1, -1.0], [0.1, 1.2]];
+    corners.map(|corner| [centre[0] + far * corner[0], centre[1] + far * corner[1]])
 }
 
 struct Growing {
@@ -126,6 +130,95 @@ impl Growing {
             self.triangles.len() as u32 - 1
         })
     }
+}
+
+/// Flips before an edge is given up, for each triangle that it crosses at first.
+const MOST_FLIPS: usize = 10_000;
+
+/// Makes an edge between two nodes by flips of the edges that it crosses (Sloan, *Adv. Eng. Software* 13 (1987)).
+///
+/// - `points`: with those of the triangle around them
+/// - `kept`: whether an edge must stay
+/// - returns false where an edge that must stay is in the way, or a node
+pub(crate) fn recover(
+    triangles: &mut [Triangle],
+    points: &[[f64; 2]],
+    [a, b]: [u32; 2],
+    kept: &dyn Fn([u32; 2]) -> bool,
+) -> bool {
+    let at = |node: u32| points[node as usize];
+    let turn = |a: u32, b: u32, c: u32| {
+        let [a, b, c] = [a, b, c].map(at);
+        (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+    };
+    let of_a: Vec<usize> = (0..triangles.len()).filter(|&t| triangles[t].nodes.contains(&a)).collect();
+    if of_a.iter().any(|&t| triangles[t].nodes.contains(&b)) {
+        return true;
+    }
+    let corner = |triangle: &Triangle, node: u32| triangle.nodes.iter().position(|&n| n == node).unwrap_or(0);
+    let crossed = |triangle: &Triangle| {
+        let [p, q] = [1, 2].map(|step| triangle.nodes[(corner(triangle, a) + step) % 3]);
+        (turn(a, b, p) < 0.0 && turn(a, b, q) > 0.0).then_some([p, q])
+    };
+    let Some(mut first) = of_a.into_iter().find(|&t| crossed(&triangles[t]).is_some()) else { return false };
+    for _ in 0..MOST_FLIPS {
+        // From the first triangle on, the first edge on the way whose two triangles are convex together.
+        let (mut here, mut side) = (first, corner(&triangles[first], a));
+        let flipped = loop {
+            let Triangle { nodes, next } = triangles[here];
+            let [p, q] = [nodes[(side + 1) % 3], nodes[(side + 2) % 3]];
+            let beyond = next[side] as usize;
+            if kept([p, q]) || beyond >= triangles.len() {
+                return false;
+            }
+            let other = triangles[beyond].next.iter().position(|&t| t as usize == here).unwrap_or(0);
+            let (near, far) = (nodes[side], triangles[beyond].nodes[other]);
+            let is_convex = turn(near, p, far) > 0.0 && turn(far, q, near) > 0.0;
+            let still = |node: u32| node == a || node == b;
+            let crosses = !still(near) && !still(far) && turn(a, b, near) * turn(a, b, far) < 0.0;
+            if is_convex && (!crosses || far == b) {
+                break Some((here, side, beyond, other));
+            }
+            if far == b {
+                break None;
+            }
+            // On through the side of the triangle beyond that the edge crosses.
+            let out = if turn(a, b, far) > 0.0 { q } else { p };
+            side = corner(&triangles[beyond], out);
+            here = beyond;
+        };
+        let Some((here, side, beyond, other)) = flipped else { return false };
+        flip(triangles, [here, beyond], [side, other]);
+        let has = |t: usize, node: u32| triangles[t].nodes.contains(&node);
+        if [here, beyond].iter().any(|&t| has(t, a) && has(t, b)) {
+            return true;
+        }
+        if let Some(&t) = [here, beyond].iter().find(|&&t| has(t, a) && crossed(&triangles[t]).is_some()) {
+            first = t;
+        }
+    }
+    false
+}
+
+/// Flips the edge between two triangles, which is opposite to these corners of them.
+fn flip(triangles: &mut [Triangle], [here, beyond]: [usize; 2], [side, other]: [usize; 2]) {
+    let (one, two) = (triangles[here], triangles[beyond]);
+    let (near, p, q) = (one.nodes[side], one.nodes[(side + 1) % 3], one.nodes[(side + 2) % 3]);
+    let far = two.nodes[other];
+    // Counter-clockwise: near, p, q and far, q, p become near, p, far and near, far, q.
+    let (beside_q, beside_p) = (one.next[(side + 1) % 3], one.next[(side + 2) % 3]);
+    let (far_p, far_q) = (two.next[(other + 1) % 3], two.next[(other + 2) % 3]);
+    triangles[here] = Triangle { nodes: [near, p, far], next: [far_p, beyond as u32, beside_p] };
+    triangles[beyond] = Triangle { nodes: [near, far, q], next: [far_q, beside_q, here as u32] };
+    let mut rename = |of: u32, from: usize, to: usize| {
+        if let Some(triangle) = triangles.get_mut(of as usize)
+            && let Some(side) = triangle.next.iter().position(|&t| t as usize == from)
+        {
+            triangle.next[side] = to as u32;
+        }
+    };
+    rename(far_p, beyond, here);
+    rename(beside_q, here, beyond);
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use fractum_math::Vec3;
 use fractum_math::elementary::sin_cos;
 
 use super::delaunay::triangulate;
+use super::squares::Squares;
 use super::unit_interval;
 use crate::{Group, Mesh};
 
@@ -73,9 +74,9 @@ const SAMPLES: usize = 256;
 /// Rounds in which inner nodes move to the middle of their neighbours.
 const ROUNDS: usize = 6;
 /// Least distance of two nodes over the size of elements before they move; edges end at 1 in the mean.
-const APART: f64 = 0.72;
+pub(crate) const APART: f64 = 0.72;
 /// Least distance of an inner node from the middle of a line of the outline, over the size of elements.
-const CLEAR: f64 = 0.6;
+pub(crate) const CLEAR: f64 = 0.6;
 
 /// Triangles of a body within an outline and without its holes.
 ///
@@ -97,7 +98,7 @@ pub fn fill(outlines: &[Outline], group: &str, size: &dyn Fn([f64; 2]) -> f64, s
         for t in &triangles {
             t.iter().for_each(|&a| around[a as usize].extend(t.iter().filter(|&&b| b != a)));
         }
-        let obstacles = Grid::new(&rim.middles, rim.finest);
+        let obstacles = Squares::new(&rim.middles, rim.finest);
         for node in (fixed..nodes.len()).filter(|&node| !around[node].is_empty()) {
             let count = around[node].len() as f64;
             let sum = |axis: usize| around[node].iter().map(|&other| nodes[other as usize][axis]).sum::<f64>();
@@ -261,8 +262,8 @@ fn scattered(rim: &Rim, size: &dyn Fn([f64; 2]) -> f64, seed: u64) -> Vec<[f64; 
         [f64::min, f64::max].map(|f| [0, 1].map(|axis| rim.nodes.iter().map(|p| p[axis]).fold(f64::NAN, f)));
     let pitch = 0.4 * rim.finest;
     let [columns, rows] = [0, 1].map(|axis| ((high[axis] - low[axis]) / pitch).ceil() as u64);
-    let mut taken = Grid::new(&rim.nodes, rim.finest);
-    let middles = Grid::new(&rim.middles, rim.finest);
+    let mut taken = Squares::new(&rim.nodes, rim.finest);
+    let middles = Squares::new(&rim.middles, rim.finest);
     let mut cells: Vec<(u64, u64)> =
         (0..columns * rows).map(|cell| ((unit_interval(seed, cell) * 2f64.powi(52)) as u64, cell)).collect();
     cells.sort_unstable();
@@ -286,36 +287,6 @@ fn scattered(rim: &Rim, size: &dyn Fn([f64; 2]) -> f64, seed: u64) -> Vec<[f64; 
         }
     }
     nodes
-}
-
-/// Points by squares.
-struct Grid {
-    side: f64,
-    squares: BTreeMap<[i64; 2], Vec<[f64; 2]>>,
-}
-
-impl Grid {
-    fn new(points: &[[f64; 2]], side: f64) -> Self {
-        let mut grid = Grid { side, squares: BTreeMap::new() };
-        points.iter().for_each(|&at| grid.add(at));
-        grid
-    }
-
-    fn add(&mut self, at: [f64; 2]) {
-        self.squares.entry(at.map(|x| (x / self.side).floor() as i64)).or_default().push(at);
-    }
-
-    fn has_within(&self, at: [f64; 2], distance: f64) -> bool {
-        let [low, high] = [-distance, distance].map(|by| at.map(|x| ((x + by) / self.side).floor() as i64));
-        (low[1]..=high[1]).any(|row| {
-            (low[0]..=high[0]).any(|column| {
-                self.squares.get(&[column, row]).is_some_and(|points| {
-                    let near = |p: &[f64; 2]| (p[0] - at[0]).powi(2) + (p[1] - at[1]).powi(2) < distance * distance;
-                    points.iter().any(near)
-                })
-            })
-        })
-    }
 }
 
 #[cfg(test)]

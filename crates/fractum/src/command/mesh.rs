@@ -1,10 +1,10 @@
-//! `fractum mesh info` and `fractum mesh convert`.
+//! `fractum mesh info`, `fractum mesh joints` and `fractum mesh convert`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::{Subcommand, ValueEnum};
-use fractum::{ExitCode, Failure, say};
+use fractum::{ExitCode, Failure, mesh_of_case, say};
 use fractum_case::model::part_files;
 use fractum_case::{read_case, refuse_endless};
 use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
@@ -24,6 +24,17 @@ pub(crate) enum MeshCommand {
         /// Case whose materials say how short edges must be, in the unit that it gives the mesh.
         #[arg(long)]
         case: Option<PathBuf>,
+    },
+    /// Cut the joints and grains of a case into its mesh, say what was made of them, and write the mesh.
+    Joints {
+        /// Case file with mesh.joints or mesh.grains.
+        case: PathBuf,
+        /// File to write, in the unit m: .msh (4.1, binary) or .vtu.
+        #[arg(short, long)]
+        output: Option<PathBuf>,
+        /// Replace a value of [parameters].
+        #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
+        set: Vec<(String, String)>,
     },
     /// Write a mesh in another format: Gmsh (.msh), or VTK for ParaView (.vtu).
     Convert {
@@ -71,21 +82,38 @@ pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Fail
                 say!("{}", mesh_info::text(&file, &mesh, demand.as_ref()));
             }
         }
-        MeshCommand::Convert { file, output, parts, to } => convert((&file, parts), &output, to)?,
+        MeshCommand::Joints { case, output, set } => joints(&case, output.as_deref(), &set)?,
+        MeshCommand::Convert { file, output, parts, to } => write(|| read(&file, parts), &output, to)?,
     }
     Ok(ExitCode::Done)
 }
 
-fn convert((file, parts): (&Path, Option<u32>), output: &Path, to: Option<Target>) -> Result<(), Failure> {
+fn joints(case: &Path, output: Option<&Path>, set: &[(String, String)]) -> Result<(), Failure> {
+    let case = read_case(case, set)?;
+    if case.mesh.as_ref().is_none_or(|mesh| mesh.network.is_empty()) {
+        let path = case.source.path.display();
+        return Err(Failure::input(format!(
+            "{path}: this case has neither mesh.joints nor mesh.grains; fractum explain mesh.joints"
+        )));
+    }
+    let (mesh, warnings) = mesh_of_case(&case)?;
+    mesh.notices.iter().for_each(|notice| say!("{notice}"));
+    warnings.iter().for_each(|warning| say!("{warning}"));
+    let Some(output) = output else { return Ok(()) };
+    write(|| Ok(mesh), output, None)
+}
+
+/// Writes a mesh in the format that the ending of a file says.
+fn write(mesh: impl FnOnce() -> Result<Mesh, Failure>, output: &Path, to: Option<Target>) -> Result<(), Failure> {
     let wrong = |text: &str| Err(Failure::input(format!("{}: {text}", output.display())));
     let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (ending.as_str(), to) {
         ("msh", to) => {
-            let mesh = read(file, parts)?;
+            let mesh = mesh()?;
             let format = to.unwrap_or(Target::Msh41Binary).into();
             Ok(fractum_output::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
         }
-        ("vtu", None) => Ok(fractum_output::atomic::write(output, &mesh_vtu::bytes(&read(file, parts)?)?)?),
+        ("vtu", None) => Ok(fractum_output::atomic::write(output, &mesh_vtu::bytes(&mesh()?)?)?),
         ("vtu", Some(_)) => wrong("--to is for files that end in .msh; leave it out"),
         _ => wrong(
             "ends in neither .msh nor .vtu, the formats that are written; for others write a .msh with --to msh22, then: \

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_case::build::{SolidDivision, cannot_divide, cut_mesh, divide, replicated_bodies};
+use fractum_case::build::{SolidDivision, cannot_divide, cut_mesh, cut_network, divide, replicated_bodies};
 use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_math::Vec3;
@@ -60,11 +60,14 @@ impl MeshFiles {
         };
         let reason = source.parts.filter(|_| processes.all > 1).and_then(|_| cannot_divide(case));
         let is_part = source.parts.is_some() && processes.all > 1 && reason.is_none();
-        if is_part && (source.scramble.is_some() || source.halvings > 0 || source.join.is_some()) {
+        if is_part
+            && (source.scramble.is_some() || source.halvings > 0 || source.join.is_some() || !source.network.is_empty())
+        {
             let remedy = "leave out mesh.parts, or write the mesh first and cut it then";
             return Err(fail(
                 source,
-                ": parts that several processes read are neither joined, halved nor scrambled".to_owned(),
+                ": parts that several processes read are neither joined, halved, scrambled nor cut by joints"
+                    .to_owned(),
                 remedy,
             ));
         }
@@ -114,6 +117,18 @@ pub(crate) fn mesh_hash(case: &Case) -> Result<u128, Failure> {
     Ok(hash(&hashes.collect::<Result<Vec<_>, Failure>>()?))
 }
 
+/// The mesh of a case in metres, joined, moved, halved and with its joints and grains as the case says; interfaces are not cut yet. And what is doubtful.
+///
+/// # Errors
+/// [`Failure::Input`] for a case without a mesh, and for what cannot be read or cut.
+pub fn mesh_of_case(case: &Case) -> Result<(Mesh, Vec<Diagnostic>), Failure> {
+    let Some(source) = &case.mesh else {
+        return Err(Failure::input(format!("{}: this case has no mesh", case.source.path.display())));
+    };
+    let read = read_files(source, Processes::default())?;
+    Ok((read.mesh, read.warnings))
+}
+
 /// One hash of several; that of one file is its own.
 fn hash(hashes: &[u128]) -> u128 {
     match hashes {
@@ -146,7 +161,7 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Fa
     if source.unit != 1.0 {
         mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
     }
-    let warnings = source.join.as_ref().map_or_else(Vec::new, |join| join_solids(&mut mesh, join));
+    let mut warnings = source.join.as_ref().map_or_else(Vec::new, |join| join_solids(&mut mesh, join));
     if let Some((share, seed)) = source.scramble {
         mesh = scrambled(&mesh, share, seed);
     }
@@ -155,6 +170,7 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Fa
         memory::require(bytes, "halving the edges of the mesh".to_owned())?;
         mesh = halved(&mesh);
     }
+    warnings.extend(cut_network(&source.network, &mut mesh).map_err(Failure::Input)?);
     Ok(ReadFiles { mesh, hashes, warnings })
 }
 
