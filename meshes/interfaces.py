@@ -88,6 +88,52 @@ def growing(size, even, end, ratio):
     return places
 
 
+def plate(name, core, cells, half, growth, jitter=0.12, seed=1):
+    """A square of triangles that is fine in its middle: an even square core, and square rings around it whose cells grow with their distance.
+
+    - `core`, `half`: half the sides of the core and of the plate; `cells`: along a side of the core; `growth`: of the rings
+    """
+    noise = random.Random(seed)
+    step = 2 * core / cells
+    index, points, squares = {}, [], []
+
+    def node(key, x, y):
+        if key not in index:
+            index[key] = len(points)
+            points.append((x, y))
+        return index[key]
+
+    def in_core(i, j):
+        return node(("core", i, j), -core + step * i, -core + step * j)
+
+    squares += [[in_core(i, j), in_core(i + 1, j), in_core(i + 1, j + 1), in_core(i, j + 1)] for i in range(cells) for j in range(cells)]
+    rim = [(i, 0) for i in range(cells)] + [(cells, j) for j in range(cells)]
+    rim += [(cells - i, cells) for i in range(cells)] + [(0, cells - j) for j in range(cells)]
+    rings = round(math.log(half / core) / math.log(growth))
+    for ring in range(rings):
+
+        def at(ring, k):
+            i, j = rim[k % len(rim)]
+            scale = (half / core) ** (ring / rings)
+            return in_core(i, j) if ring == 0 else node((ring, k % len(rim)), (-core + step * i) * scale, (-core + step * j) * scale)
+
+        squares += [[at(ring, k), at(ring + 1, k), at(ring + 1, k + 1), at(ring, k + 1)] for k in range(len(rim))]
+    triangles = []
+    for number, (a, b, c, d) in enumerate(squares):
+        one, other = math.dist(points[a], points[c]), math.dist(points[b], points[d])
+        first = number % 2 == 0 if near(one, other) else one < other
+        triangles += [(a, b, c), (a, c, d)] if first else [(a, b, d), (b, c, d)]
+    moved = []
+    for x, y in points:
+        size = step * max(1.0, max(abs(x), abs(y)) / core)
+        dx, dy = noise.uniform(-jitter, jitter) * size, noise.uniform(-jitter, jitter) * size
+        moved.append((x, y) if near(max(abs(x), abs(y)), half) else (x + dx, y + dy))
+    edges = {tuple(sorted((t[k], t[(k + 1) % 3]))) for t in triangles for k in range(3)}
+    side = lambda y: sorted(e for e in edges if all(near(points[n][1], y) for n in e))
+    groups = {"plate": (2, triangles), "bottom": (1, side(-half)), "top": (1, side(half))}
+    write(FOLDER / f"{name}.msh", [(x, y, 0.0) for x, y in moved], groups)
+
+
 def main():
     FOLDER.mkdir(exist_ok=True)
     # Double cantilever: 120 x 2 x 6 mm, bonded from 40 mm on.
@@ -128,6 +174,8 @@ def main():
         },
         jitter=0.2,
     )
+    # A plate of 60 x 60 mm that is fine in its middle, where a crack meets an interface; cases cut both into it.
+    plate("plate", 0.003, 40, 0.030, 1.08)
     # A patch: a square whose middle line is an interface, turned.
     rectangle(
         "patch",

@@ -290,6 +290,14 @@ fn misfit(place: &Place, fate: &Fate) -> Option<Diagnostic> {
             "a joint longer than an element",
             "leave it out, or take smaller elements (mesh.halvings)",
         ),
+        Fate::Unfilled(at) => {
+            let [x, y] = at.map(|x| quantity(x, "m"));
+            note(
+                format!("no triangles fill the mesh around this joint, near ({x}, {y})"),
+                "room for elements beside it",
+                "smaller elements (mesh.halvings), or leave out the joint that comes near to it there",
+            )
+        }
         Fate::Sharp { other, angle, at } => {
             let with = other.map_or("a side of the body".to_owned(), |other| format!("joint {}", other + 1));
             let [x, y] = at.map(|x| quantity(x, "m"));
@@ -324,10 +332,14 @@ fn told(own: &Joints, fates: &[Fate], all: &AllJoints, range: std::ops::Range<us
     };
     let count = |is: fn(&Fate) -> bool| fates.iter().filter(|fate| is(fate)).count();
     let sharp = count(|fate| matches!(fate, Fate::Sharp { .. }));
+    let unfilled = count(|fate| matches!(fate, Fate::Unfilled(_)));
     let short = count(|fate| matches!(fate, Fate::Short { .. }));
     let mut left = Vec::new();
     if sharp > 0 {
         left.push(format!("{sharp} left out that meet others at less than {LEAST_ANGLE} deg"));
+    }
+    if unfilled > 0 {
+        left.push(format!("{unfilled} around which no triangles fit"));
     }
     if short > 0 {
         left.push(format!("{short} shorter than an element"));

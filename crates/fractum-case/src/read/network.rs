@@ -184,7 +184,7 @@ fn grains(table: Table<'_>) -> Option<GrainsWithin> {
         phases.push(("grains".to_owned(), 1.0));
     }
     if share == 1.0 {
-        table.refuse("matrix", "without share: grains fill the body");
+        table.set_aside("matrix", "without share: grains fill the body");
     }
     let matrix = table.text("matrix").or("matrix".to_owned());
     let boundary = table.text("boundaries").or("grain-boundaries".to_owned());

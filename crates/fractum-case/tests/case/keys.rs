@@ -194,6 +194,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("interfaces[].residual", "interfaces[1].residual")
                 .replace("interfaces[].dilation_angle", "interfaces[1].dilation_angle")
                 .replace("interfaces[]", "interfaces[0]")
+                .replace("mesh.joints[]", "mesh.joints[0]")
                 .replace("probes[].reaction.about", "probes[15].reaction.about")
                 .replace("probes[].moment", "probes[38].moment")
                 .replace("probes[].displacement.about", "probes[16].displacement.about")

@@ -111,13 +111,34 @@ impl Mesh {
         }
         self.refuse_taken(groups.iter().map(|group| (&group.name, 1)))?;
         let sheet = Sheet::new(self, &elements(groups)).ok_or(NetworkError::Overlap)?;
-        let mut pattern = Pattern::new(&sheet, true);
         let around = around(&sheet);
-        let fates: Vec<Fate> = traces.iter().map(|trace| pattern.add(trace, around, least)).collect();
-        tidy(&mut pattern);
+        // Joints around which no triangles fit are left out one by one.
+        let mut left: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
+        let (pattern, fates, filled) = loop {
+            let mut pattern = Pattern::new(&sheet, true);
+            let add = |(number, trace): (usize, &Trace)| match left.get(&number) {
+                Some(&at) => pattern.none(Fate::Unfilled(at)),
+                None => pattern.add(trace, around, least),
+            };
+            let fates: Vec<Fate> = traces.iter().enumerate().map(add).collect();
+            tidy(&mut pattern);
+            if pattern.segments.iter().all(|segment| segment.joint.is_none()) {
+                break (pattern, fates, None);
+            }
+            match refill(&pattern, 1) {
+                Ok(filled) => break (pattern, fates, Some(filled)),
+                Err(at) => {
+                    let cut = (0..traces.len()).filter(|&joint| matches!(fates[joint], Fate::Cut(_)));
+                    let far = |joint: usize| pattern::foot(at, traces[joint].ends).0;
+                    match cut.min_by(|&a, &b| far(a).total_cmp(&far(b))) {
+                        Some(nearest) => left.insert(nearest, at),
+                        None => return Err(NetworkError::Unfilled { at }),
+                    };
+                }
+            }
+        };
         let cutting = Cutting { fates, turn: pattern.turn(), shift: pattern.shift };
-        if pattern.segments.iter().any(|segment| segment.joint.is_some()) {
-            let filled = refill(&pattern, 1).map_err(|at| NetworkError::Unfilled { at })?;
+        if let Some(filled) = filled {
             let labels = sheet.labels;
             let group = |joint: u32| traces[joint as usize].group;
             with_joints(self, filled, &labels, &group, &names(groups));
@@ -542,7 +563,7 @@ mod tests {
             assert!((volumes.iter().sum::<f64>() - 1.0).abs() < 1e-12 && volumes.iter().all(|v| *v > 0.0));
             let ratio = |t: &[u32; 4]| tetrahedron(t.map(|n| mesh.nodes[n as usize])).radius_ratio;
             let worst = mesh.tetrahedra.iter().map(ratio).fold(1.0, f64::min);
-            println!("worst {worst} shift {} area {small} {large} of {}", cutting.shift, mesh.tetrahedra.len());
+            assert!(worst > 0.1, "radius ratio {worst}");
             let group = mesh.group("joints")[0].clone();
             let off = |t: &u32| {
                 let [a, b, c] = mesh.triangles[*t as usize].map(|n| mesh.nodes[n as usize]);
@@ -586,7 +607,6 @@ mod tests {
                 assert!((quartz + feldspar + mortar - 2.0).abs() < 1e-9);
                 assert!((quartz + feldspar - 2.0 * share).abs() < 0.1, "{quartz} {feldspar} {mortar}");
                 assert!((0.15..0.45).contains(&(quartz / (quartz + feldspar))), "{quartz} {feldspar}");
-                println!("{made:?} worst {}", worst(&mesh));
                 assert!(worst(&mesh) > 0.15, "{}", worst(&mesh));
                 let expected = 2.0 / (0.25 * std::f64::consts::PI * 0.12 * 0.12);
                 assert!((made.count as f64 / expected - 1.0).abs() < 0.25, "{} {expected}", made.count);
@@ -621,6 +641,26 @@ mod tests {
             let (dip, scatter) = mean_dip(discs.iter().copied());
             assert!((dip[0] - 0.7).abs() < 0.02 && (dip[1] - 2.0).abs() < 0.03, "{dip:?}");
             assert!((scatter - 0.1).abs() < 0.01, "{scatter}");
+        }
+    }
+
+    #[test]
+    fn joints_may_begin_where_others_end() {
+        let trace = |ends| Trace { ends, group: 0 };
+        for turn in [1.57f64, 1.05, 0.785] {
+            for seed in 1..5 {
+                let mut mesh = plate(20, seed);
+                let (y, x) = fractum_math::elementary::sin_cos(turn);
+                let traces = [
+                    trace([[-0.5, 0.5], [1.0, 0.5]]),
+                    trace([[1.0, 0.5], [2.5, 0.5]]),
+                    trace([[1.0, 0.5], [1.0 + 2.0 * x, 0.5 + 2.0 * y]]),
+                ];
+                let cutting = mesh.cut_traces(&traces, &[everywhere()], 0.25).unwrap();
+                assert!(cutting.fates.iter().all(|fate| matches!(fate, Fate::Cut(_))), "{cutting:?}");
+                assert!(worst(&mesh) > 0.25, "radius ratio {}", worst(&mesh));
+                assert!(cutting.turn < 0.02, "{}", cutting.turn);
+            }
         }
     }
 }

@@ -36,6 +36,8 @@ pub enum Fate {
         /// That of an edge.
         edge: f64,
     },
+    /// No triangles fill the mesh around it, near this place.
+    Unfilled([f64; 2]),
     /// It meets another one, or the surface, at an angle that is too small for elements between them.
     Sharp {
         /// The other joint; none for a side of the body.
@@ -149,7 +151,7 @@ impl<'a> Pattern<'a> {
     }
 
     /// A joint of which nothing is there.
-    fn none(&mut self, fate: Fate) -> Fate {
+    pub(super) fn none(&mut self, fate: Fate) -> Fate {
         self.joints.push(([0.0; 2], 0));
         fate
     }
@@ -198,7 +200,8 @@ impl<'a> Pattern<'a> {
                 continue;
             }
             let (gap, at) = apart([a, b], [p, q]);
-            if gap < NEAR * self.sheet.size_at(at) && self.sheet.is_allowed(group, at) {
+            let near = NEAR * self.sheet.size_at(at);
+            if gap < near && !goes_on([a, b], [p, q], near) && self.sheet.is_allowed(group, at) {
                 return Some(Fate::Sharp {
                     other: segment.joint,
                     angle: fractum_math::elementary::asin(sine.min(1.0)),
@@ -349,6 +352,15 @@ impl<'a> Pattern<'a> {
         let all = (0..).zip(&self.segments).filter(|(_, segment)| apart(segment)).filter_map(meets);
         all.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, number, at)| (number, at))
     }
+}
+
+/// Whether two lines lead away from a common end in opposite directions.
+fn goes_on([a, b]: [[f64; 2]; 2], [p, q]: [[f64; 2]; 2], near: f64) -> bool {
+    let ends = [(a, b, p, q), (a, b, q, p), (b, a, p, q), (b, a, q, p)];
+    ends.into_iter().any(|(one, far, two, other)| {
+        let away = (far[0] - one[0]) * (other[0] - two[0]) + (far[1] - one[1]) * (other[1] - two[1]);
+        distance(one, two) < near && away < 0.0
+    })
 }
 
 /// The end of a line that a place on it is near to.

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::pattern::Pattern;
-use super::sheet::{OUTSIDE, cross, distance};
+use super::sheet::{OUTSIDE, Sheet, cross, distance};
 use crate::generate::delaunay::{Triangle, around, recover, triangulate};
 use crate::generate::outline::{APART, CLEAR};
 use crate::generate::squares::Squares;
@@ -53,12 +53,10 @@ pub(super) fn refill(pattern: &Pattern<'_>, seed: u64) -> Result<Refilled, [f64;
     for segment in pattern.segments.iter().filter(|segment| segment.joint.is_some() && segment.fixed.is_none()) {
         let [a, b] = segment.ends.map(|end| vertex(&mut local, end));
         let [p, q] = [a, b].map(|end| local.at[end as usize]);
-        let middle = [0, 1].map(|axis| f64::midpoint(p[axis], q[axis]));
-        let size = f64::midpoint(sheet.size_at(middle), f64::midpoint(sheet.size_at(p), sheet.size_at(q)));
-        let count = (distance(p, q) / size).round().max(1.0) as u32;
+        let shares = division(sheet, [p, q]);
+        let count = shares.len();
         let mut from = a;
-        for step in 1..=count {
-            let share = f64::from(step) / f64::from(count);
+        for (step, share) in (1..).zip(shares) {
             let to = if step == count {
                 b
             } else {
@@ -120,6 +118,30 @@ pub(super) fn refill(pattern: &Pattern<'_>, seed: u64) -> Result<Refilled, [f64;
     let fixed_count = add_free(&mut local, pattern, &inside, seed);
     fill(local, pattern, (fixed_count, &inside), seed)
         .map(|(local, triangles)| assemble(pattern, &local, &inside, (triangles, joints, parts)))
+}
+
+/// Shares of a line at which it is divided, the last of which is 1: as much of the size of elements lies between each two.
+fn division(sheet: &Sheet, [p, q]: [[f64; 2]; 2]) -> Vec<f64> {
+    let length = distance(p, q);
+    let at = |share: f64| [0, 1].map(|axis| p[axis] + share * (q[axis] - p[axis]));
+    // Steps of a quarter of an element at the beginning of each.
+    let (mut shares, mut sums) = (vec![0.0f64], vec![0.0f64]);
+    while shares[shares.len() - 1] < 1.0 {
+        let (from, sum) = (shares[shares.len() - 1], sums[sums.len() - 1]);
+        let to = (from + 0.25 * sheet.size_at(at(from)) / length).min(1.0);
+        let size = sheet.size_at(at(f64::midpoint(from, to)));
+        shares.push(to);
+        sums.push(sum + (to - from) * length / size);
+    }
+    let all = sums[sums.len() - 1];
+    let count = all.round().max(1.0) as usize;
+    let share = |part: usize| {
+        let wanted = all * part as f64 / count as f64;
+        let after = sums.partition_point(|&sum| sum < wanted).clamp(1, sums.len() - 1);
+        let within = (wanted - sums[after - 1]) / (sums[after] - sums[after - 1]);
+        shares[after - 1] + within * (shares[after] - shares[after - 1])
+    };
+    (1..=count).map(|part| if part == count { 1.0 } else { share(part) }).collect()
 }
 
 /// Nodes of the region.

@@ -8,6 +8,11 @@ use crate::topology::{NO_ELEMENT, sides_of_triangles};
 /// Outside of all bodies.
 pub(super) const OUTSIDE: u32 = u32::MAX;
 
+/// By how much the size of elements changes at most, over the distance.
+const GRADING: f64 = 0.35;
+/// How often the sizes at the ends of all edges are made to fit each other.
+const SMOOTHED: usize = 8;
+
 /// A side of elements that must stay: of the surface, between groups, or with lines of its own.
 #[derive(Clone, Debug)]
 pub(super) struct FixedSide {
@@ -84,7 +89,14 @@ impl Sheet {
                 count[node as usize] += 1;
             }
         }
-        let size: Vec<f64> = sum.iter().zip(&count).map(|(sum, &count)| sum / count.max(1) as f64).collect();
+        let mut size: Vec<f64> = sum.iter().zip(&count).map(|(sum, &count)| sum / count.max(1) as f64).collect();
+        for _ in 0..SMOOTHED {
+            for &([a, b], _) in &sides {
+                let [a, b] = [a as usize, b as usize];
+                let more = GRADING * distance(at[a], at[b]);
+                (size[a], size[b]) = (size[a].min(size[b] + more), size[b].min(size[a] + more));
+            }
+        }
         let allowed = elements.iter().map(|own| allowed(own, triangles.len())).collect();
         let used = (0..at.len()).filter(|&node| count[node] > 0).map(|node| (at[node], node as u32));
         let mean = sum.iter().sum::<f64>() / count.iter().sum::<usize>().max(1) as f64;
