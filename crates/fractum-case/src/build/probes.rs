@@ -68,6 +68,10 @@ impl Names for NamesOfScene<'_, '_> {
         !self.context.case.source.stage.is_empty()
     }
 
+    fn has_interfaces(&self) -> bool {
+        !self.context.case.interfaces.is_empty()
+    }
+
     fn whole_case(&self) -> Place {
         self.context.whole_case()
     }

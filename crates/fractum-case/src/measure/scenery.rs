@@ -41,6 +41,9 @@ pub(crate) trait Names {
     /// Whether the case is one of several stages.
     fn is_stage(&self) -> bool;
 
+    /// Whether the case has interfaces, which part elements that are not damaged.
+    fn has_interfaces(&self) -> bool;
+
     /// The place of what has none of its own.
     fn whole_case(&self) -> Place;
 
@@ -143,7 +146,8 @@ impl Scenery<'_> {
             bonds: bonds_within(self.bonded, &within.value),
             elements: elements_within(self.solid, &within.value),
         };
-        if inside.edges.iter().chain(&inside.bonds).flatten().all(|inside| !inside) {
+        let of_interfaces = inside.elements.iter().filter(|_| self.names.has_interfaces());
+        if inside.edges.iter().chain(&inside.bonds).chain(of_interfaces).flatten().all(|inside| !inside) {
             let found = ": no edge of a body that may be damaged and no bond that may break fulfils the condition";
             self.names.error(&within.place, found.to_owned(), "a condition that holds where a crack is expected");
         }

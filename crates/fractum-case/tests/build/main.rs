@@ -8,6 +8,7 @@ mod detonation;
 mod doubts;
 mod gas;
 mod heat;
+mod network;
 mod selection;
 mod sides;
 mod weibull;

@@ -533,3 +533,34 @@ fn files_that_are_no_cases_are_refused() {
     std::fs::write(&path, "fractum = = 1").unwrap();
     assert!(message(&path).contains("case.toml:1:"), "{}", message(&path));
 }
+
+#[test]
+fn mistakes_about_joints_and_grains_are_told_where_they_stand() {
+    let cases: &[(&str, &str)] = &[
+        ("[[mesh.joints]]\nspacing = 1", "4:1: mesh.joints[0] has none of table, angle, dip; expected exactly one"),
+        (
+            "[[mesh.joints]]\nangle = 0\nspacing = 1\nlength = 2",
+            "7:1: mesh.joints[0].length has no effect without persistence: the joints of the set go through the body; remove it",
+        ),
+        (
+            "[[mesh.joints]]\nangle = 0\nspacing = 1\npersistence = 1.5\nlength = 2",
+            "7:15: mesh.joints[0].persistence = 1.5; expected above 0 and below 1",
+        ),
+        ("[[mesh.joints]]\nangle = 0\nspacng = 1", "6:1: mesh.joints[0].spacng is not a key; did you mean spacing?"),
+        (
+            "[[mesh.joints]]\ndip = \"100 deg\"\ndip_direction = 0\nspacing = 1",
+            "5:7: mesh.joints[0].dip = \"100 deg\"; expected from 0 to 90 deg",
+        ),
+        (
+            "[[mesh.joints]]\ntable = [[0, 1, 2]]",
+            "5:10: mesh.joints[0].table[0] = [0, 1, 2]; expected x, y, x, y of a trace, or x, y, z, dip, dip direction, diameter of a disc",
+        ),
+        ("[[mesh.joints]]\ntable = \"motion.csv\"", "motion.csv:2:1: 2 numbers; expected 4 of a trace, or 6 of a disc"),
+        ("[mesh.grains]\nsize = 1\nshare = 2", "6:9: mesh.grains.share = 2; expected from 0.1 to 1"),
+        ("[mesh.grains]\nseed = 1", "4:1: mesh.grains.size is missing"),
+    ];
+    for (network, message) in cases {
+        let found = mistakes(&SMALL.replacen("[materials.steel]", &format!("{network}\n[materials.steel]"), 1));
+        assert!(found.iter().any(|found| found.contains(message)), "{network}:\n{message}\n{found:#?}");
+    }
+}

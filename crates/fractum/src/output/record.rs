@@ -243,7 +243,8 @@ impl Recorder {
             |every: f64| !is_last && before.is_some_and(|before| !is_due(time, next_index(before, every), every));
         self.state.times.push(time);
         let gone = Gone::at(scene, &counts);
-        let as_before = self.gone.replace(gone) == Some(gone);
+        // Interfaces part without anything that leaves.
+        let as_before = self.gone.replace(gone) == Some(gone) && scene.interfaces().is_empty();
         let case = Arc::clone(&self.case);
         let is_known = |index: usize, probe: &dyn Probe| match case.probes[index].every {
             Some(every) => is_held(every),
