@@ -120,6 +120,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
     let rate =
         table.table("rate").map(|rate| super::rate::read(rate, criterion, strength_ratio, table.is_overridden()));
     table.finish("here");
+    let is_spread = matches!(regularisation, Some(Some(_)));
     let tensile_strength = tensile_strength?;
     let strength_ratio = compressive_strength? / tensile_strength;
     Some(Damage {
@@ -130,7 +131,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
             softening: softening?,
             residual,
             unilateral: false,
-            friction: friction?,
+            friction: friction?.filter(|_| !is_spread),
             rate_time,
         },
         unilateral: unilateral?,
