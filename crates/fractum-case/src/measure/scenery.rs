@@ -144,7 +144,7 @@ impl Scenery<'_> {
         let inside = InsideCracks {
             edges: edges_within(self.solid, &within.value),
             bonds: bonds_within(self.bonded, &within.value),
-            elements: elements_within(self.solid, &within.value),
+            elements: elements_within(self.solid, &within.value, self.names.has_interfaces()),
         };
         let of_interfaces = inside.elements.iter().filter(|_| self.names.has_interfaces());
         if inside.edges.iter().chain(&inside.bonds).chain(of_interfaces).flatten().all(|inside| !inside) {
@@ -173,10 +173,11 @@ fn edges_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
     (0..solid.body_count()).map(body).collect()
 }
 
-/// Which elements of bodies that may be damaged fulfil a condition at their middles, body by body.
-fn elements_within(solid: &Solid, condition: &Field) -> Vec<Vec<bool>> {
+/// Which elements of bodies that may be damaged, or of all, fulfil a condition at their middles, body by body.
+fn elements_within(solid: &Solid, condition: &Field, of_all: bool) -> Vec<Vec<bool>> {
     let body = |index: usize| {
-        let elements = 0..if solid.body(index).damage.is_some() { solid.body(index).elements.len() as u32 } else { 0 };
+        let counts = of_all || solid.body(index).damage.is_some();
+        let elements = 0..if counts { solid.body(index).elements.len() as u32 } else { 0 };
         elements.map(|element| condition.holds_at(solid.element_middle(index, element))).collect()
     };
     (0..solid.body_count()).map(body).collect()

@@ -118,7 +118,7 @@ fn what_does_not_fit_the_mesh_is_told_with_its_place() {
         (
             "[[mesh.joints]]\ntable = [[5, 5, 6, 6]]",
             true,
-            "case.toml:5:10: mesh.joints[0].table[0]this joint is outside of the bodies",
+            "case.toml:5:10: mesh.joints[0].table[0] this joint is outside of the bodies",
         ),
         ("[[mesh.joints]]\ntable = [[0.5, 0.5, 0.51, 0.5]]", true, "this joint is 10 mm long, and an element there"),
         (
@@ -145,7 +145,7 @@ fn what_does_not_fit_the_mesh_is_told_with_its_place() {
         assert!(told.contains(message), "{network}\n{told}");
     }
     // Sets that come too near to each other say how many they leave out.
-    let crowded = "[[mesh.joints]]\nangle = 0\nspacing = 0.1\n[[mesh.joints]]\nangle = \"8 deg\"\nspacing = 0.1";
+    let crowded = "[[mesh.joints]]\nangle = 0\nspacing = 0.2\n[[mesh.joints]]\nangle = \"12 deg\"\nscatter = \"8 deg\"\nspacing = 0.2";
     let told = cut(crowded, &mut plate());
     assert!(told.len() == 1 && told[0].contains("[joints-left-out]"), "{told:?}");
 }
