@@ -63,4 +63,4 @@ pub use fractum_kernels::material::{
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
-pub use state::{BodyState, SolidState, rate_report};
+pub use state::{BodyState, SolidState, rate_report, rubbed_energy};

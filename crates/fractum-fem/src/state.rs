@@ -48,7 +48,7 @@ pub struct SolidState {
     pub viscous_dissipation: f64,
     /// Viscous stress times volume of the cells, block by block; empty without viscosity.
     pub viscous: Vec<Vec<Sym3>>,
-    /// Strains at which the cells came in, block by block; empty of those that were there from the start.
+    /// Strains at which the cells came in, block by block, empty of those that were there from the start; empty where all were.
     pub born: Vec<Vec<Sym3>>,
 }
 
@@ -62,7 +62,7 @@ impl Solid {
             dissipated: taken_energies(self, 0..self.blocks.len()).map(|(_, energy)| energy).collect(),
             viscous_dissipation: self.viscous_dissipation,
             viscous: self.blocks.iter().map(|b| b.viscous.stress.clone()).collect(),
-            born: self.blocks.iter().map(|b| b.cells.born.as_deref().unwrap_or_default().to_vec()).collect(),
+            born: born(self),
         }
     }
 
@@ -145,6 +145,22 @@ impl Solid {
         let (damage, friction) = state.dissipated.split_at(state.dissipated.len().min(self.blocks.len()));
         self.blocks.iter_mut().zip(damage).for_each(|(block, energy)| block.dissipated = *energy);
         self.blocks.iter_mut().zip(friction).for_each(|(block, energy)| block.rubbed = *energy);
+    }
+}
+
+/// Strains at which the cells came in, block by block; nothing where all were there from the start.
+fn born(solid: &Solid) -> Vec<Vec<Sym3>> {
+    if solid.blocks.iter().all(|block| block.cells.born.is_none()) {
+        return Vec::new();
+    }
+    solid.blocks.iter().map(|block| block.cells.born.as_deref().unwrap_or_default().to_vec()).collect()
+}
+
+/// Energy taken by the friction of closed cracks so far [J].
+pub fn rubbed_energy(solid: &Solid) -> f64 {
+    match solid.subcycling.as_ref().and_then(|own| own.energies()) {
+        Some([.., rubbed]) => rubbed,
+        None => solid.blocks.iter().map(|block| block.rubbed).sum(),
     }
 }
 

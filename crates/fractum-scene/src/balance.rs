@@ -1,5 +1,6 @@
 //! The books of a step: what each line of it has done goes into the ledger, and the balance is held against its guards.
 
+use fractum_fem::rubbed_energy;
 use fractum_math::{HalfSteps, Vec3, Work};
 
 use crate::clock::ThisStep;
@@ -68,7 +69,7 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Damage] = solid.dissipated_energy() + bonded.dissipated_energy() + 0.0;
     ledger[EnergyKind::External] = books.external;
     ledger[EnergyKind::Removed] = books.removed + bonded.released_energy();
-    ledger[EnergyKind::Friction] = books.friction + solid.rubbed_energy() + 0.0;
+    ledger[EnergyKind::Friction] = books.friction + rubbed_energy(solid) + 0.0;
     ledger[EnergyKind::Damping] = books.damping + solid.viscous_dissipation();
     ledger[EnergyKind::TimeStep] = books.time_step;
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();

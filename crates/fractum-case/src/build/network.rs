@@ -1,5 +1,6 @@
 //! Joints and grains of a case, cut into its mesh.
 
+use fractum_math::elementary::cbrt;
 use fractum_mesh::quality::{area_vector, signed_volume, summarize_tetrahedra, summarize_triangles};
 use fractum_mesh::{
     Cutting, Disc, Fate, JointGroup, Mesh, NetworkError, Orientation, Trace, Vec3, mean_dip, mean_direction,
@@ -379,7 +380,7 @@ fn divide(own: &GrainsWithin, mesh: &mut Mesh) -> Result<(), Diagnostics> {
     let (size, [low, high]) = extent(mesh, &allowed);
     let all = if is_plane { mesh.triangles.len() } else { mesh.tetrahedra.len() };
     let count = (0..all).filter(|&element| allowed.get(element) != Some(&false)).count() as f64;
-    let edge = if is_plane { (size / count * 4.0 / 3.0f64.sqrt()).sqrt() } else { (size / count * 8.48).cbrt() };
+    let edge = if is_plane { (size / count * 4.0 / 3.0f64.sqrt()).sqrt() } else { cbrt(size / count * 8.48) };
     if grains.size < ACROSS * edge {
         let found = format!(".size = {}, and an element is {}", quantity(grains.size, "m"), quantity(edge, "m"));
         let remedy = "larger grains, or smaller elements (mesh.halvings)";

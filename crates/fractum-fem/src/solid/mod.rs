@@ -229,14 +229,6 @@ impl Solid {
         self.blocks.iter().map(|block| block.dissipated).sum()
     }
 
-    /// Energy taken by the friction of closed cracks so far [J].
-    pub fn rubbed_energy(&self) -> f64 {
-        if let Some([.., rubbed]) = self.subcycling.as_ref().and_then(|own| own.energies()) {
-            return rubbed;
-        }
-        self.blocks.iter().map(|block| block.rubbed).sum()
-    }
-
     /// Energy dissipated by viscosity so far [J].
     pub fn viscous_dissipation(&self) -> f64 {
         self.viscous_dissipation

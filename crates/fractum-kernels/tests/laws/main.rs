@@ -80,8 +80,6 @@ const LAWS: &[Row] = &[
             contact::contact(draw, law, true)
         },
     },
-    Row { law: "liquid between walls", holds: liquid::flow },
-    Row { law: "leak-off", holds: liquid::leak },
     Row { law: "restitution", holds: contact::restitution },
     Row { law: "edge, exponential", holds: |draw| damage::way(draw, Softening::Exponential, false) },
     Row { law: "edge, linear", holds: |draw| damage::way(draw, Softening::Linear, false) },
@@ -101,7 +99,6 @@ const LAWS: &[Row] = &[
             damage::way(draw, curve, true)
         },
     },
-    Row { law: "edge whose closed crack rubs", holds: damage::rubbing },
     Row {
         law: "bond, cohesive beam",
         holds: |draw| {
@@ -134,6 +131,9 @@ const LAWS: &[Row] = &[
     Row { law: "bedding, plane strain", holds: |draw| bedding::bedding(draw, Some(Plane::Strain)) },
     Row { law: "bedding, plane stress", holds: |draw| bedding::bedding(draw, Some(Plane::Stress)) },
     Row { law: "rate of strain", holds: rate::onset },
+    Row { law: "liquid between walls", holds: liquid::flow },
+    Row { law: "leak-off", holds: liquid::leak },
+    Row { law: "edge whose closed crack rubs", holds: damage::rubbing },
 ];
 
 #[test]

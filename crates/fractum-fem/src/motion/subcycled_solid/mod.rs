@@ -20,6 +20,7 @@ use crate::motion::central_difference::{WholeStep, free_axes, kick_runs, work_of
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
 use crate::solid::subcycling::Subcycling;
+use crate::state::rubbed_energy;
 
 /// What the solid wants done about prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -160,7 +161,7 @@ pub fn advance_in_parts(
     for (fine, [dt_before, dt_after]) in [(false, long), (true, [before, after])] {
         work += prescribe(solid, Prescribe::Impose { fine, since: 0.0, dt_before, dt_after });
     }
-    own.energies = [solid.elastic_energy(), solid.dissipated_energy(), solid.rubbed_energy()];
+    own.energies = [solid.elastic_energy(), solid.dissipated_energy(), rubbed_energy(solid)];
     own.look_ahead(solid, &step);
     let step = WholeStep { measure: false, ..step };
     for part in 1..own.parts[1] {
