@@ -63,4 +63,5 @@ pub use fractum_kernels::material::{
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
-pub use state::{BodyState, SolidState, rate_report, rubbed_energy};
+pub use solid::subcycling::rubbed_energy;
+pub use state::{BodyState, SolidState, rate_report};

@@ -156,14 +156,6 @@ fn born(solid: &Solid) -> Vec<Vec<Sym3>> {
     solid.blocks.iter().map(|block| block.cells.born.as_deref().unwrap_or_default().to_vec()).collect()
 }
 
-/// Energy taken by the friction of closed cracks so far [J].
-pub fn rubbed_energy(solid: &Solid) -> f64 {
-    match solid.subcycling.as_ref().and_then(|own| own.energies()) {
-        Some([.., rubbed]) => rubbed,
-        None => solid.blocks.iter().map(|block| block.rubbed).sum(),
-    }
-}
-
 /// What damage, and where closed cracks rub their friction, has taken in some blocks, with its place in the state [J].
 pub(crate) fn taken_energies(solid: &Solid, of: Range<usize>) -> impl Iterator<Item = (u32, f64)> + '_ {
     let damage = of.clone().map(|index| (index as u32, solid.blocks[index].dissipated));

@@ -60,7 +60,7 @@ impl SceneState {
         let frequencies = (self.frequency, self.governing, self.removals);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
         let rest = (&self.left, &self.conditions, &self.interfaces, &self.liquid);
-        (touching, (&self.ledger, &self.books), frequencies, of_contacts, rest)
+        (&self.solid.born, touching, (&self.ledger, &self.books), frequencies, of_contacts, rest)
     }
 
     /// The same with another state of the solids; none where there is none.

@@ -339,7 +339,7 @@ fn a_full_disk_is_a_failure_of_the_machine_that_leaves_no_half_file() {
 #[cfg(target_os = "linux")]
 fn limits_of_the_user_are_failures_of_the_machine() {
     // Blocks of 512 bytes, and KiB.
-    for (limit, word) in [("-f 40", "too large"), ("-v 32000", "memory"), ("-v 40000", "memory")] {
+    for (limit, word) in [("-f 40", "too large"), ("-v 36000", "memory"), ("-v 44000", "memory")] {
         let workplace = Workplace::new(&breaking_bar());
         let program = workplace.command(&RUN);
         let mut shell = std::process::Command::new("sh");

@@ -56,3 +56,11 @@ impl Subcycling {
 pub(crate) fn forget_ahead(solid: &mut Solid) {
     solid.subcycling.iter_mut().for_each(|own| own.is_ahead = false);
 }
+
+/// Energy taken by the friction of closed cracks so far [J].
+pub fn rubbed_energy(solid: &Solid) -> f64 {
+    match solid.subcycling.as_ref().and_then(|own| own.energies()) {
+        Some([.., rubbed]) => rubbed,
+        None => solid.blocks.iter().map(|block| block.rubbed).sum(),
+    }
+}

@@ -19,8 +19,7 @@ use rayon::prelude::*;
 use crate::motion::central_difference::{WholeStep, free_axes, kick_runs, work_of_chunks};
 use crate::solid::Solid;
 use crate::solid::evaluate::Block;
-use crate::solid::subcycling::Subcycling;
-use crate::state::rubbed_energy;
+use crate::solid::subcycling::{Subcycling, rubbed_energy};
 
 /// What the solid wants done about prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
