@@ -394,7 +394,7 @@ fn divide(own: &GrainsWithin, mesh: &mut Mesh) -> Result<(), Diagnostics> {
     let made = mesh.divide_into_grains(grains, &allowed).map_err(|error| refused(&own.place, &error))?;
     let mean = made.sizes.iter().sum::<f64>() / made.count.max(1) as f64;
     let diameter =
-        if is_plane { (4.0 * mean / std::f64::consts::PI).sqrt() } else { (6.0 * mean / std::f64::consts::PI).cbrt() };
+        if is_plane { (4.0 * mean / std::f64::consts::PI).sqrt() } else { cbrt(6.0 * mean / std::f64::consts::PI) };
     let unit = if is_plane { "m" } else { "m^2" };
     mesh.notices.push(format!(
         "{}: {} grains of {} in the mean, boundaries of {}; {}",
