@@ -73,7 +73,8 @@ mod tests {
     #[test]
     fn a_system_whose_rows_have_any_unit_is_solved() {
         let n = 40;
-        let entry = |i: usize, j: usize| ((i * 37 + j * 11) as f64 * 0.7).sin() * 10f64.powi(i as i32 % 19 - 9);
+        let entry =
+            |i: usize, j: usize| ((i * 37 + j * 11 + i * j * 5) as f64 * 0.7).sin() * 10f64.powi(i as i32 % 19 - 9);
         let x: Vec<f64> = (0..n).map(|i| (i as f64).cos()).collect();
         let mut right: Vec<f64> = (0..n).map(|i| (0..n).map(|j| entry(i, j) * x[j]).sum()).collect();
         let mut matrix = Dense::default();
