@@ -135,6 +135,10 @@ codes! {
     EnergyGained = "energy-gained",
     /// Sides of an interface slid by a visible part of a face.
     InterfaceSlip = "interface-slip",
+    /// Liquid that is everywhere in its interfaces.
+    LiquidAtEnd = "liquid-at-end",
+    /// More liquid was drawn than there was.
+    LiquidOverdrawn = "liquid-overdrawn",
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.

@@ -32,10 +32,14 @@ pub enum Notice {
     Gained,
     /// Sides of an interface have slid by a visible part of a face [-].
     InterfaceSlip,
+    /// Liquid is in all places of its interfaces, and goes no further: their area [m²].
+    LiquidAtEnd,
+    /// More liquid was drawn than there was [m³].
+    Overdrawn,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::InterfaceSlip as usize + 1;
+    const COUNT: usize = Notice::Overdrawn as usize + 1;
 }
 
 /// Where something was noticed.

@@ -281,7 +281,8 @@ impl Plan {
         if let Some(liquid) = liquid_of(scene) {
             let places = case.flows.liquid.as_ref().map_or(0, |liquid| liquid.injections.len());
             let words = if places == 1 { "injection" } else { "injections" };
-            self.add("liquid", format!("{places} {words} into {} cells of interfaces", liquid.cell_count()));
+            let beside = if scene.solid.is_plane() { "" } else { "; in space ten faces along a radius are too few" };
+            self.add("liquid", format!("{places} {words} into {} cells of interfaces{beside}", liquid.cell_count()));
         }
         if !matches!(case.solver.kind, SolverKind::Heat | SolverKind::Modes) {
             self.describe_what_moves(case, scene);

@@ -2,7 +2,7 @@
 
 use fractum_math::Vec3;
 
-use super::Liquid;
+use super::{Liquid, LiquidState};
 use crate::interfaces::Interfaces;
 
 /// Something about a liquid.
@@ -37,7 +37,31 @@ pub struct LiquidReading {
     pub filled: f64,
 }
 
+/// Volume below nothing in a cell, over its area and the extent of all cells, that is more than rounding.
+const OVERDRAWN: f64 = 1e-9;
+
 impl Liquid {
+    /// Area of all cells, if liquid is in each [m²].
+    pub(crate) fn area_if_all_wet(&self) -> Option<f64> {
+        let cells = &self.network.cells;
+        let all_wet = (0..cells.len()).all(|cell| self.filled(cell) > 0.0);
+        all_wet.then(|| cells.iter().map(|cell| cell.area).sum())
+    }
+
+    /// Volume that was drawn and was not there, if there is any [m³].
+    pub(crate) fn overdrawn(&self) -> Option<f64> {
+        let LiquidState { pressure, amount, room, .. } = &self.state;
+        let extent = self.network.cells.iter().map(|cell| cell.area).sum::<f64>().sqrt();
+        // Sides that press on each other have less than no room.
+        let missing = |cell: usize| {
+            let below = room[cell].min(0.0) - amount[cell];
+            let seen = OVERDRAWN * self.network.cells[cell].area * extent;
+            if pressure[cell] <= 0.0 && below > seen { below } else { 0.0 }
+        };
+        let missing: f64 = (0..amount.len()).map(missing).sum();
+        (missing > 0.0).then_some(missing)
+    }
+
     /// Part of the room of a cell that is filled.
     fn filled(&self, cell: usize) -> f64 {
         let [amount, room] = [self.state.amount[cell], self.state.room[cell]];

@@ -34,6 +34,7 @@ impl Scene {
         look_at_springs(self);
         look_at_solids(self);
         look_at_interfaces(self);
+        look_at_liquid(self);
         self.look_at_overlaps();
     }
 
@@ -125,6 +126,16 @@ fn look_at_interfaces(scene: &mut Scene) {
         scene.interfaces().farthest_slip(&scene.solid).filter(|(_, slip)| *slip > SLID)
     {
         scene.note(Notice::InterfaceSlip, Site::Element { body: body as usize, element }, slip);
+    }
+}
+
+fn look_at_liquid(scene: &mut Scene) {
+    let Some(liquid) = scene.optional.liquid.as_deref() else { return };
+    let (full, overdrawn) = (liquid.area_if_all_wet(), liquid.overdrawn());
+    for (what, found) in [(Notice::LiquidAtEnd, full), (Notice::Overdrawn, overdrawn)] {
+        if let Some(value) = found {
+            scene.note(what, Site::Scene, value);
+        }
     }
 }
 

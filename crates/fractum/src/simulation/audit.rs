@@ -282,6 +282,19 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             ),
             "they still press on where they were, and meet nothing else: end the run before, or take larger elements along it",
         ),
+        Notice::LiquidAtEnd => (
+            Code::LiquidAtEnd,
+            format!(
+                "liquid is everywhere in its interfaces, {}, whose ends let nothing through",
+                quantity(*value, "m^2")
+            ),
+            "a crack would go on: end the run before, or let the interface go farther",
+        ),
+        Notice::Overdrawn => (
+            Code::LiquidOverdrawn,
+            format!("an injection has drawn {} more than there was", quantity(*value, "m^3")),
+            "end its negative rate before, or give a pressure, which draws no more than there is",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(
