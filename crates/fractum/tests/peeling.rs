@@ -1,8 +1,11 @@
 //! Interfaces between elements, as their user meets them.
 
+use std::fs;
+use std::path::Path;
+
 use fractum_mesh::MshFormat;
 
-use crate::common::{Workplace, mesh_bytes, run};
+use crate::common::{Workplace, mesh_bytes, run, summary};
 use crate::heat::layers;
 
 /// Two layers that an interface joins, peeled off each other at one end.
@@ -153,5 +156,27 @@ fn stiff_interfaces_rest_on_stiffness_enough() {
         let ended = Workplace::with_mesh(&stiff, &mesh).fractum(&["run", "case.toml", "-o", "out"]);
         assert_eq!(ended.code, Some(0), "{name}: {}", ended.stderr);
         assert!(ended.stdout.contains("as expected") && !ended.stdout.contains("NOT as"), "{name}: {}", ended.stdout);
+    }
+}
+
+#[test]
+fn liquid_that_fills_its_interface_or_is_overdrawn_is_told() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let text = fs::read_to_string(root.join("cases/liquid/viscosity.toml")).unwrap();
+    let mesh = fs::read(root.join("meshes/interfaces/liquid.msh")).unwrap();
+    let text = text.split("[[expect]]").next().unwrap().replace("../../meshes/interfaces/liquid.msh", "bar.msh");
+    let text = text.replace("\"20 s\"", "\"4 s\"").replace("duration/240", "duration/20");
+    for (from, to, code) in [
+        ("", "", None),
+        ("viscosity = \"0.1 Pa s\"", "viscosity = \"1e-6 Pa s\"", Some("liquid-at-end")),
+        ("rate = \"1e-4 m^2/s\"", "rate = \"-1e-4 m^2/s\"", Some("liquid-overdrawn")),
+    ] {
+        let place = Workplace::with_mesh(&text.replacen(from, to, 1), &mesh);
+        let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
+        assert_eq!(ended.code, Some(0), "{to}: {}", ended.stderr);
+        let said = summary(&place, "out")["warnings"].to_string();
+        for one in ["liquid-at-end", "liquid-overdrawn"] {
+            assert_eq!(said.contains(one), code == Some(one), "{to}: {said}");
+        }
     }
 }
