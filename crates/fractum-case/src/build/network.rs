@@ -5,7 +5,7 @@ use fractum_mesh::quality::{area_vector, signed_volume, summarize_tetrahedra, su
 use fractum_mesh::{
     Cutting, Disc, Fate, JointGroup, Mesh, NetworkError, Orientation, Trace, Vec3, mean_dip, mean_direction,
 };
-use fractum_output::number::quantity;
+use fractum_output::number::{quantity, significant};
 use fractum_output::warning::Code;
 
 use crate::model::{GrainsWithin, JointSource, Joints, Network};
@@ -227,13 +227,15 @@ fn add(all: &mut AllJoints, own: &Joints, mesh: &Mesh) -> Result<(), Diagnostics
         JointSource::Set(set) => {
             let (_, [low, high]) = extent(mesh, &allowed);
             // Numbers that no memory takes are asked for by a unit that was forgotten.
-            let most = 1e6 * set.spacing;
-            if (high - low).norm() > most {
+            let across = (high - low).norm();
+            let of_each = set.length.map_or(1.0, |length| (across / length).max(1.0));
+            let planes = across / set.spacing * if is_plane { 1.0 } else { of_each };
+            if planes * of_each > 1e6 {
                 return Err(one(
                     &own.place,
                     " has more than a million joints".to_owned(),
                     "",
-                    "a larger spacing, with its unit",
+                    "a larger spacing or length, with its unit",
                 ));
             }
             if is_plane {
@@ -317,10 +319,9 @@ fn told(own: &Joints, fates: &[Fate], all: &AllJoints, range: std::ops::Range<us
     let cut: Vec<usize> = range.clone().filter(|&joint| matches!(fates[joint - range.start], Fate::Cut(_))).collect();
     let sizes = fates.iter().map(|fate| if let Fate::Cut(size) = fate { *size } else { 0.0 });
     let sum: f64 = sizes.sum();
-    let measured =
-        if is_plane { format!("P21 {:.4} 1/m", sum / extent) } else { format!("P32 {:.4} 1/m", sum / extent) };
+    let measured = format!("{} {} 1/m", if is_plane { "P21" } else { "P32" }, significant(sum / extent, 4));
     let asked = match &own.source {
-        JointSource::Set(set) => format!(" (asked {:.4})", set.persistence / set.spacing),
+        JointSource::Set(set) => format!(" (asked {})", significant(set.persistence / set.spacing, 4)),
         _ => String::new(),
     };
     let direction = if is_plane {
@@ -331,6 +332,14 @@ fn told(own: &Joints, fates: &[Fate], all: &AllJoints, range: std::ops::Range<us
         let [dip, direction, deviation] = [dip, direction, deviation].map(f64::to_degrees);
         format!("dip {dip:.1} deg to {direction:.1}, deviation {deviation:.1}")
     };
+    let left = reasons(fates);
+    let left = if left.is_empty() { String::new() } else { format!("; {}", left.join(", ")) };
+    let size = quantity(sum, if is_plane { "m" } else { "m^2" });
+    format!("{} \"{}\": {} joints, {size}, {measured}{asked}, {direction}{left}", own.place.key, own.name, cut.len())
+}
+
+/// Why joints in the body are left out, and how many for each reason.
+fn reasons(fates: &[Fate]) -> Vec<String> {
     let count = |is: fn(&Fate) -> bool| fates.iter().filter(|fate| is(fate)).count();
     let sharp = count(|fate| matches!(fate, Fate::Sharp { .. }));
     let unfilled = count(|fate| matches!(fate, Fate::Unfilled(_)));
@@ -345,19 +354,16 @@ fn told(own: &Joints, fates: &[Fate], all: &AllJoints, range: std::ops::Range<us
     if short > 0 {
         left.push(format!("{short} shorter than an element"));
     }
-    let left = if left.is_empty() { String::new() } else { format!("; {}", left.join(", ")) };
-    let size = quantity(sum, if is_plane { "m" } else { "m^2" });
-    format!("{} \"{}\": {} joints, {size}, {measured}{asked}, {direction}{left}", own.place.key, own.name, cut.len())
+    left
 }
 
 fn left_out(own: &Joints, fates: &[Fate]) -> Option<Diagnostic> {
-    let inside = fates.iter().filter(|fate| matches!(fate, Fate::Cut(_) | Fate::Sharp { .. })).count();
-    let sharp = fates.iter().filter(|fate| matches!(fate, Fate::Sharp { .. })).count();
-    (sharp as f64 > MOST_LEFT_OUT * inside as f64).then(|| {
-        let found =
-            format!(": {sharp} of {inside} joints are left out: they meet others at less than {LEAST_ANGLE} deg");
+    let inside = fates.iter().filter(|fate| !matches!(fate, Fate::Outside)).count();
+    let left = inside - fates.iter().filter(|fate| matches!(fate, Fate::Cut(_))).count();
+    (left as f64 > MOST_LEFT_OUT * inside as f64).then(|| {
+        let found = format!(": {left} of {inside} joints are not in the mesh: {}", reasons(fates).join(", "));
         let note = Diagnostic::warning(Code::JointsLeftOut, &own.place, found);
-        note.remedy("less scatter, or a larger spacing; smaller elements (mesh.halvings) bear joints that are nearer")
+        note.remedy("less scatter, a larger spacing or longer joints; smaller elements (mesh.halvings) bear joints that are nearer and shorter")
     })
 }
 

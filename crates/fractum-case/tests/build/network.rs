@@ -131,6 +131,11 @@ fn what_does_not_fit_the_mesh_is_told_with_its_place() {
         ("[[mesh.joints]]\ndip = 0\ndip_direction = 0\nspacing = 0.3", true, "expected joints of a plane mesh"),
         ("[[mesh.joints]]\nangle = 0\nspacing = 0.3", false, "expected joints of a mesh in space"),
         ("[[mesh.joints]]\nangle = 0\nspacing = 1e-7", true, "has more than a million joints"),
+        (
+            "[[mesh.joints]]\nangle = 0\nspacing = 0.01\npersistence = 0.5\nlength = 1e-6",
+            true,
+            "has more than a million joints",
+        ),
         ("[[mesh.joints]]\nangle = 0\nspacing = 0.3\nwhere = \"x > 5 m\"", true, "holds in no element"),
         (
             "[[mesh.joints]]\nangle = 0\nspacing = 0.3\npersistence = 0.5\nlength = 0.01",
@@ -148,4 +153,14 @@ fn what_does_not_fit_the_mesh_is_told_with_its_place() {
     let crowded = "[[mesh.joints]]\nangle = 0\nspacing = 0.2\n[[mesh.joints]]\nangle = \"12 deg\"\nscatter = \"8 deg\"\nspacing = 0.2";
     let told = cut(crowded, &mut plate());
     assert!(told.len() == 1 && told[0].contains("[joints-left-out]"), "{told:?}");
+    let short = "[[mesh.joints]]\nangle = 0\nspacing = 0.2\npersistence = 0.5\nlength = 0.04\nlength_scatter = 1";
+    let told = cut(short, &mut plate());
+    assert!(told.len() == 1 && told[0].contains("shorter than an element"), "{told:?}");
+}
+
+#[test]
+fn the_density_of_joints_in_a_large_body_has_its_digits() {
+    let mut mesh = structured_rectangle([40, 20], [2e5, 1e5], Some(Jitter { fraction: 0.15, seed: 1 }));
+    cut("[[mesh.joints]]\nangle = \"70 deg\"\nspacing = \"40 km\"", &mut mesh);
+    assert!(mesh.notices[0].contains("(asked 2.5e-5)"), "{:?}", mesh.notices);
 }
