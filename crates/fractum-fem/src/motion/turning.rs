@@ -4,6 +4,7 @@ use fractum_math::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::body::{Body, Kinematics};
+use crate::cells::kernel::total_strain;
 use crate::damage::edges_in_step::Advance;
 use crate::element::CARRIES;
 use crate::motion::subcycled_solid::own_step;
@@ -102,12 +103,26 @@ fn become_corotational(solid: &mut Solid, found: Vec<u32>, dt: f64, turning: &mu
     forget_ahead(solid);
     for &body in &found {
         solid.bodies[body as usize].body.kinematics = Kinematics::Corotational;
+        turn_births(solid, body as usize);
     }
     see_strains_before(solid, &found, dt);
     solid.neighbours.expect_events();
     let after = energy_in_step(solid, &found, dt);
     turning.extend(found);
     before - after
+}
+
+/// Has the strains at which the cells of a body came in be those of corotational strains: what they had turned by then is no stress.
+fn turn_births(solid: &mut Solid, body: usize) {
+    let Solid { blocks, displacement, .. } = solid;
+    for Block { cells, .. } in blocks.iter_mut().filter(|block| block.body == body) {
+        let Some(mut born) = cells.born.take() else { continue };
+        for (cell, born) in born.iter_mut().enumerate() {
+            let strain = |kinematics| total_strain(cells, cell, displacement, kinematics);
+            *born += strain(Kinematics::Corotational) - strain(Kinematics::Small);
+        }
+        cells.born = Some(born);
+    }
 }
 
 /// Whether a cell of a block, one of eight, will have turned after a time [s] if its nodes go on as they do.
@@ -167,4 +182,52 @@ fn energy_in_step(solid: &Solid, bodies: &[u32], dt: f64) -> f64 {
     let own: Vec<f64> = own.filter(|block| bodies.contains(&(block.body as u32))).map(of).collect();
     // In the order of the blocks, whoever has them.
     solid.neighbours.gather_blocks(own).into_iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use fractum_kernels::material::Elastic;
+
+    use super::*;
+    use crate::body::ElementKind;
+    use crate::removal::{put_in_body, take_out_body};
+
+    /// A square that comes in where its nodes have turned has no stress, before it turns and after; strained then, it has the energy of that strain.
+    #[test]
+    fn what_a_body_had_turned_as_it_came_in_is_no_stress() {
+        for (angle, poisson_ratio, size) in [(0.3f64, 0.0, 1e-3), (-0.1, 0.45, 1.0), (1.0, 0.2, 1e3)] {
+            let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio };
+            let nodes = [[0.0, 0.0], [size, 0.0], [size, size], [0.0, size]].map(|[x, y]| Vec3::new(x, y, 0.0));
+            for smoothed in [false, true] {
+                let body = Body::new("square", ElementKind::T3, vec![[0, 1, 2, 2], [0, 2, 3, 3]], elastic);
+                let body = if smoothed { body.smoothed() } else { body };
+                let body = Body { kinematics: Kinematics::Auto, ..body };
+                let mut solid = Solid::new(nodes.to_vec(), vec![body]).unwrap();
+                take_out_body(&mut solid, 0.0, 0);
+                let (sine, cosine) = angle.sin_cos();
+                let turn = Mat3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0);
+                let place = |solid: &mut Solid, stretch: f64| {
+                    for (displacement, at) in solid.displacement.iter_mut().zip(&nodes) {
+                        *displacement = turn * Vec3::new(at.x * (1.0 + stretch), at.y, 0.0) - at;
+                    }
+                };
+                place(&mut solid, 0.0);
+                put_in_body(&mut solid, 0);
+                let mut turning = Vec::new();
+                let booked = let_turn(&mut solid, 0, 0.0, &mut turning);
+                assert_eq!(turning, [0]);
+                solid.update_internal_forces(0.0, true);
+                let scale = 30e9 * size * size;
+                let found = [booked, solid.elastic_energy()];
+                assert!(found.iter().all(|energy| energy.abs() < 1e-20 * scale), "{angle} {smoothed}: {found:?}");
+                let stretch = 1e-3;
+                place(&mut solid, stretch);
+                solid.update_internal_forces(0.0, true);
+                let lame = poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio));
+                let exact = 0.5 * (lame + 1.0 / (1.0 + poisson_ratio)) * stretch * stretch * scale;
+                let found = solid.elastic_energy();
+                assert!((found - exact).abs() < 1e-9 * exact, "{angle} {smoothed}: {found} J of {exact} J");
+            }
+        }
+    }
 }

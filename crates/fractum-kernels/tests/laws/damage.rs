@@ -62,6 +62,25 @@ impl Edge {
         let taken = if growth > 0.0 { taken.by(growth) } else { 0.0 };
         Step { growth, taken, nominal: self.nominal(edge, strain) }
     }
+
+    /// A way to and fro through strains, from 0 to 1, and how far it goes.
+    fn to_and_fro(&self, draw: &mut Draw) -> (f64, impl Fn(f64) -> Sym3 + use<>) {
+        let far = self.strength / self.softens.restraint.modulus * draw.over_decades(0.5, 20.0);
+        let mut ends = || -> [f64; 6] { std::array::from_fn(|_| far * draw.between(-1.0, 1.0)) };
+        let (one, two, in_plane) = (ends(), ends(), self.in_plane);
+        let strain = move |at: f64| {
+            let (a, b) = ((7.0 * at).sin() * at, (17.0 * at).sin());
+            let [xx, yy, zz, xy, yz, zx] = std::array::from_fn(|k| one[k] * a + two[k] * b);
+            if in_plane { Sym3([xx, yy, 0.0, xy, 0.0, 0.0]) } else { Sym3([xx, yy, zz, xy, yz, zx]) }
+        };
+        (far, strain)
+    }
+
+    /// Axes that are turned, in a plane about its normal.
+    fn turned(&self, draw: &mut Draw) -> impl Fn(Sym3) -> Sym3 + use<> {
+        let turn: Mat3 = if self.in_plane { draw.turn_in_plane() } else { draw.turn() };
+        move |tensor| Sym3::symmetric_part(&(turn * tensor.to_matrix() * turn.transpose()))
+    }
 }
 
 /// On a way to and fro: damage only grows, no edge mends, what damage takes is what the forces do not give back and never below zero,
@@ -69,16 +88,8 @@ impl Edge {
 pub(crate) fn way(draw: &mut Draw, curve: Softening, unilateral: bool) -> Held {
     let law = edge(draw, curve, unilateral, None);
     let words = format!("{:?}, {:?}", law.softens.criterion.kind(), law.softens.restraint);
-    let limit = law.strength / law.softens.restraint.modulus * draw.over_decades(0.5, 20.0);
-    let mut ends = || -> [f64; 6] { std::array::from_fn(|_| limit * draw.between(-1.0, 1.0)) };
-    let (one, two) = (ends(), ends());
-    let strain = |at: f64| {
-        let (a, b) = ((7.0 * at).sin() * at, (17.0 * at).sin());
-        let [xx, yy, zz, xy, yz, zx] = std::array::from_fn(|k| one[k] * a + two[k] * b);
-        if law.in_plane { Sym3([xx, yy, 0.0, xy, 0.0, 0.0]) } else { Sym3([xx, yy, zz, xy, yz, zx]) }
-    };
-    let turn: Mat3 = if law.in_plane { draw.turn_in_plane() } else { draw.turn() };
-    let turned = |tensor: Sym3| Sym3::symmetric_part(&(turn * tensor.to_matrix() * turn.transpose()));
+    let (_, strain) = law.to_and_fro(draw);
+    let turned = law.turned(draw);
     let (mut edge, mut other) = (EdgeDamage::intact(law.strength), EdgeDamage::intact(law.strength));
     let mut last = (Sym3::ZERO, Sym3::ZERO);
     let steps = 300;
@@ -115,16 +126,8 @@ pub(crate) fn rubbing(draw: &mut Draw) -> Held {
     let crushed = draw.one_of(&[false, true]);
     let limit = friction.limit(if crushed { 0.0 } else { 1.0 }, 1.0);
     let words = format!("{:?}, {:?}", softens.criterion.kind(), friction);
-    let far = law.strength / softens.restraint.modulus * draw.over_decades(0.5, 20.0);
-    let mut ends = || -> [f64; 6] { std::array::from_fn(|_| far * draw.between(-1.0, 1.0)) };
-    let (one, two) = (ends(), ends());
-    let strain = |at: f64| {
-        let (a, b) = ((7.0 * at).sin() * at, (17.0 * at).sin());
-        let [xx, yy, zz, xy, yz, zx] = std::array::from_fn(|k| one[k] * a + two[k] * b);
-        if law.in_plane { Sym3([xx, yy, 0.0, xy, 0.0, 0.0]) } else { Sym3([xx, yy, zz, xy, yz, zx]) }
-    };
-    let turn: Mat3 = if law.in_plane { draw.turn_in_plane() } else { draw.turn() };
-    let turned = |tensor: Sym3| Sym3::symmetric_part(&(turn * tensor.to_matrix() * turn.transpose()));
+    let (far, strain) = law.to_and_fro(draw);
+    let turned = law.turned(draw);
     let is_flat = softens.hooke.zz == 0.0;
     let (mut edge, mut slip, mut turned_slip) = (EdgeDamage::intact(law.strength), Sym3::ZERO, Sym3::ZERO);
     let (mut from, mut stress, mut stored) = (Sym3::ZERO, Sym3::ZERO, 0.0);
