@@ -169,7 +169,7 @@ fn liquid_that_fills_its_interface_or_is_overdrawn_is_told() {
     for (from, to, code) in [
         ("", "", None),
         ("viscosity = \"0.1 Pa s\"", "viscosity = \"1e-6 Pa s\"", Some("liquid-at-end")),
-        ("rate = \"1e-4 m^2/s\"", "rate = \"-1e-4 m^2/s\"", Some("liquid-overdrawn")),
+        ("rate = \"0.5*rate*1 m\"", "rate = \"-0.5*rate*1 m\"", Some("liquid-overdrawn")),
     ] {
         let place = Workplace::with_mesh(&text.replacen(from, to, 1), &mesh);
         let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
