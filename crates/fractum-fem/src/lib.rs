@@ -48,7 +48,7 @@ pub use cracks::{
     Fracture, SeparatedElement, SeparatedFacet, Separation,
 };
 pub use damage::rate::RateReport;
-pub use damage::threshold::IN_RESERVE;
+pub use damage::threshold::{IN_RESERVE, LengthReport};
 pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
@@ -58,7 +58,8 @@ pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
 pub use fractum_kernels::material::{
-    Bedding, Criterion, CriterionKind, DamageLaw, Degradation, Elastic, Plane, Softening, Stiffness, Wave,
+    Bedding, Criterion, CriterionKind, DamageLaw, Degradation, EXCESS_OF_PEAK, Elastic, Plane, Softening, Stiffness,
+    Wave,
 };
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};

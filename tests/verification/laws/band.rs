@@ -54,7 +54,7 @@ impl Cell {
         let modulus = if is_plane_strain { young_modulus / (1.0 - nu * nu) } else { young_modulus };
         // The largest length is in proportion to the fracture energy.
         let much = 1e6 * strength * strength / young_modulus * size;
-        let length = solid(much).length_report(0).1 * curve.largest_length(modulus, strength, much);
+        let length = solid(much).length_report(0).largest_ratio * curve.largest_length(modulus, strength, much);
         let share = draw.between(0.001, 0.95);
         let fracture_energy = much * length / (share * curve.largest_length(modulus, strength, much));
         Cell {

@@ -4,7 +4,10 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use fractum_fem as fem;
-use fractum_fem::{CriterionKind, DamageLaw, DamageZone, Elastic, Formulation, Plane, Region, Solid, motion};
+use fractum_fem::{
+    CriterionKind, DamageLaw, DamageZone, EXCESS_OF_PEAK, Elastic, Formulation, LengthReport, Plane, Region, Solid,
+    motion,
+};
 use fractum_math::Vec3;
 use fractum_mesh::renumber::hilbert_order;
 use fractum_mesh::topology;
@@ -14,6 +17,9 @@ use fractum_output::warning::Code;
 use super::{Context, use_in_words};
 use crate::model::{BodyKind, Case, Damage, GroupUse, SolidBody};
 use crate::{Diagnostic, Place};
+
+/// Excess of the loads of cracks by the size of elements that is told.
+const LARGE_EXCESS: f64 = 0.05;
 
 /// A solid body of the case with its elements in the mesh.
 pub(super) struct Part<'a> {
@@ -286,10 +292,10 @@ fn damage_zone(
 }
 
 /// Warns where elements are large for their fracture energy, or strength had to be lowered.
-pub(super) fn length_warnings(solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
+pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
     for (index, part) in parts.iter().enumerate() {
-        let (reduced, ratio) = solid.length_report(index);
+        let LengthReport { reduced_edges: reduced, largest_ratio: ratio, size } = solid.length_report(index);
         if let Some([length, size]) = motion::phase_sizes(solid, index).filter(|[length, size]| *length < 1.5 * size) {
             let found = format!(": phase field of length {length:.3e} m on elements of {size:.3e} m");
             warnings.push(
@@ -301,7 +307,14 @@ pub(super) fn length_warnings(solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> 
             let found = format!(": strength lowered on {reduced} edges that are too long for the fracture energy");
             let note = Diagnostic::warning(Code::StrengthLowered, &part.place, found);
             warnings.push(note.remedy("refine the mesh where cracks are expected"));
-        } else if motion::phase_sizes(solid, index).is_none() && ratio > 0.25 {
+            continue;
+        }
+        if motion::phase_sizes(solid, index).is_some() {
+            continue;
+        }
+        if let Some(warning) = excess_warning(case, part, size) {
+            warnings.push(warning);
+        } else if ratio > 0.25 {
             let percent = 100.0 * ratio;
             let found =
                 format!(": the longest element reaches {percent:.0} % of the length at which softening snaps back");
@@ -313,12 +326,37 @@ pub(super) fn length_warnings(solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> 
     warnings
 }
 
+/// Warns where elements are so large beside the process zone that cracks run late.
+///
+/// - `size`: of the elements where cracks are expected [m]
+fn excess_warning(case: &Case, part: &Part, size: f64) -> Option<Diagnostic> {
+    let material = &case.materials[part.body.material];
+    let damage = material.damage.as_ref().filter(|_| part.body.damage)?;
+    let zone = damage.value.law.process_zone(material.young_modulus);
+    let excess = EXCESS_OF_PEAK * size / zone;
+    (excess >= LARGE_EXCESS).then(|| {
+        let found = format!(
+            ": elements of {} where cracks are expected are {:.2} of the process zone E Gf/ft^2 of {}: loads at which cracks run from notches come out \
+             some {:.0} % too high, {:.0} % at most",
+            quantity(size, "m"),
+            size / zone,
+            quantity(zone, "m"),
+            100.0 * excess,
+            180.0 * excess
+        );
+        Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(format!(
+            "2 % want elements of {} there, or an interface where the path of the crack is known (docs/accuracy.md)",
+            quantity(0.02 * zone / EXCESS_OF_PEAK, "m")
+        ))
+    })
+}
+
 /// Warns where a body would be stronger by its few flaws than its elements allow.
 pub(super) fn weibull_warnings(context: &Context<'_>, solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
     let warning = |(index, part): (usize, &Part)| {
         let report = context.weibull.iter().find(|report| report.body == part.name)?;
         let strength = context.case.materials[part.body.material].damage.as_ref()?.value.law.tensile_strength;
-        let (_, ratio) = solid.length_report(index);
+        let ratio = solid.length_report(index).largest_ratio;
         let most = strength * (1.0 / ratio).sqrt();
         let expected = report.mean * (1.0 + report.variation);
         (expected > most).then(|| {

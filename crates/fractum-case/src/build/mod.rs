@@ -192,7 +192,7 @@ impl<'a> Context<'a> {
         let inner = interfaces::inner_facets(self, &numbering);
         boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
         let mut solid = self.solid(&parts, &numbering, &boundary)?;
-        let mut warnings = bodies::length_warnings(&solid, &parts);
+        let mut warnings = bodies::length_warnings(self.case, &solid, &parts);
         warnings.extend(bodies::weibull_warnings(self, &solid, &parts));
         bodies::set_initial_velocity(self, &mut solid, &parts, &numbering);
         let mut boundary_of_parts = contacts::facets_of_parts(self, &parts, &numbering);

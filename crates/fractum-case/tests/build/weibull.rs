@@ -6,6 +6,7 @@ use fractum_case::build::{BuiltScene, build_scene};
 use fractum_case::parse_case;
 use fractum_dem::criterion::{BeamRankine, FractureCriterion};
 use fractum_dem::{BeamSection, CrackFaces, Particles};
+use fractum_fem::LengthReport;
 use fractum_math::Vec3;
 use fractum_math::elementary::gamma;
 use fractum_mesh::Mesh;
@@ -237,7 +238,7 @@ fn strong_places_ask_nothing_of_the_mesh() {
         let case = if scatter { case } else { plain(&case) };
         let case = parse_case(&case, Path::new("case.toml"), &[]).unwrap_or_else(|errors| panic!("{errors}"));
         let built = build_scene(&case, &mesh, Vec::new(), Vec::new()).unwrap_or_else(|errors| panic!("{errors}"));
-        let (reduced, ratio) = built.scene.solid.length_report(0);
+        let LengthReport { reduced_edges: reduced, largest_ratio: ratio, .. } = built.scene.solid.length_report(0);
         assert_eq!(reduced, 0);
         if scatter {
             let strongest = factors(&built).iter().map(|(_, factor)| *factor).fold(0.0, f64::max);

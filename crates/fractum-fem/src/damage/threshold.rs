@@ -29,14 +29,23 @@ pub(crate) struct Threshold {
     strength: Vec<f64>,
     /// Characteristic length of each of them [m].
     length: Vec<f64>,
-    /// Edges whose strength was lowered to fit their length.
-    pub(crate) reduced_edges: usize,
-    /// Largest ratio of a length to the largest one possible: at which softening snaps back, or that a phase field may have.
-    pub(crate) largest_length_ratio: f64,
+    pub(crate) report: LengthReport,
     /// The law of the phase field, where there is one.
     pub(crate) phase: Option<PhaseLaw>,
     /// How edges grow stronger with the rate of strain, where they do.
     pub(crate) rate: Option<Arc<RateCurves>>,
+}
+
+/// How a body's elements suit its softening.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LengthReport {
+    /// Edges whose strength was lowered to fit their length.
+    pub reduced_edges: usize,
+    /// Largest ratio of a length to the largest one possible: of a characteristic length to that at which softening snaps back, of that of a phase field to the
+    /// longest it may be.
+    pub largest_ratio: f64,
+    /// Mean size of the elements where cracks are expected, the small ones of those that may be damaged [m].
+    pub size: f64,
 }
 
 impl Threshold {
@@ -57,8 +66,8 @@ impl Threshold {
             Some(known) => known.par_iter().map(|&edge| of_edge(edge)).collect(),
             None => (0..edges.len() as u32).into_par_iter().map(of_edge).collect(),
         };
+        let size = size_where_cracks_go(body, zone, edges, volumes);
         let law = |regularisation: Regularisation| {
-            let size = size_where_cracks_go(body, zone, edges, volumes);
             PhaseLaw::of(body, zone, [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size])
         };
         let phase = zone.regularisation.map(law).transpose()?;
@@ -85,8 +94,7 @@ impl Threshold {
             known,
             strength,
             length,
-            reduced_edges,
-            largest_length_ratio: largest_ratio,
+            report: LengthReport { reduced_edges, largest_ratio, size },
             phase,
             rate: zone.rate.clone(),
         })

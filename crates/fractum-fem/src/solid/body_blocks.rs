@@ -12,7 +12,7 @@ use crate::cells::cell::{Bundle, Class, Geometry};
 use crate::damage::edge::EdgeField;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::{StandardCells, StandardDamage};
-use crate::damage::threshold::Threshold;
+use crate::damage::threshold::{LengthReport, Threshold};
 use crate::divided::places::Places;
 use crate::divided::{BodyShare, Replication};
 use crate::error::SolidError;
@@ -65,8 +65,7 @@ impl BodyModel {
             let is_fine = of_body.is_fine(bundle.items[0]);
             blocks.push(Block::new(bundle, index, law, is_fine));
         }
-        let (reduced_edges, largest_length_ratio) =
-            threshold.as_ref().map_or((0, 0.0), |t| (t.reduced_edges, t.largest_length_ratio));
+        let lengths = threshold.as_ref().map_or_else(LengthReport::default, |t| t.report);
         let phase = threshold.as_ref().and_then(|t| t.phase).map(|law| Box::new(PhaseField::new(law, edge_count)));
         let around = edges.as_ref().and_then(BodyEdges::table_of_elements);
         let standard = match (softens, threshold, around) {
@@ -88,8 +87,7 @@ impl BodyModel {
             location,
             standard,
             phase,
-            reduced_edges,
-            largest_length_ratio,
+            lengths,
         };
         Ok((model, blocks))
     }

@@ -8,6 +8,7 @@ use crate::body::elasticity::Elasticity;
 use crate::cells::viscosity::BodyViscosity;
 use crate::damage::phase::PhaseField;
 use crate::damage::standard::StandardDamage;
+use crate::damage::threshold::LengthReport;
 use crate::divided::BodyShare;
 use crate::divided::places::Places;
 
@@ -26,10 +27,7 @@ pub(crate) struct BodyModel {
     pub(crate) location: Places,
     pub(crate) standard: Option<StandardDamage>,
     pub(crate) phase: Option<Box<PhaseField>>,
-    /// Edges whose strength was lowered to fit their length.
-    pub(crate) reduced_edges: usize,
-    /// Largest ratio of a characteristic length to the largest one that softening allows.
-    pub(crate) largest_length_ratio: f64,
+    pub(crate) lengths: LengthReport,
 }
 
 /// Which cells of a body are made.

@@ -15,7 +15,7 @@ use crate::body::{Body, ElementKind, Formulation, Region};
 use crate::cells::block::{Cells, NodeSlots, Scratch};
 use crate::cells::cell::Geometry;
 use crate::damage::edge::EdgeField;
-use crate::damage::threshold::characteristic_length;
+use crate::damage::threshold::{LengthReport, characteristic_length};
 use crate::error::SolidError;
 pub(crate) use crate::solid::body_model::BodyModel;
 use crate::solid::body_model::Chosen;
@@ -308,10 +308,9 @@ impl Solid {
         &self.bodies[index].alive
     }
 
-    /// Edges of a body whose strength was lowered to fit their length, and the largest ratio of a length to the largest one
-    /// possible: a characteristic length to that at which softening snaps back, that of a phase field to the longest it may be.
-    pub fn length_report(&self, index: usize) -> (usize, f64) {
-        (self.bodies[index].reduced_edges, self.bodies[index].largest_length_ratio)
+    /// How the elements of a body suit its softening; zeros where nothing softens.
+    pub fn length_report(&self, index: usize) -> LengthReport {
+        self.bodies[index].lengths
     }
 
     /// Centre of an element without load [m].

@@ -25,6 +25,10 @@ pub struct DamageLaw {
     pub rate_time: f64,
 }
 
+/// How much too high the load of a crack comes out under local damage, over the size of the elements at its tip in process zones: the mean of rows and of
+/// irregular triangles, of which some are exact and some have 1.8 times as much (`cases/crack-size`, against an exact cohesive crack).
+pub const EXCESS_OF_PEAK: f64 = 0.8;
+
 impl DamageLaw {
     /// Rankine's criterion with exponential softening and the default residual.
     ///

@@ -5,13 +5,14 @@ use std::fmt::Write;
 use std::path::Path;
 
 use fractum_case::{Case, printable};
+use fractum_fem::EXCESS_OF_PEAK;
 use fractum_mesh::quality::{self, Lengths, Summary};
 use fractum_mesh::{Group, Mesh, topology};
 use fractum_output::number::{grouped, quantity, significant};
 use serde_json::{Value, json};
 
-/// Part of the process zone that edges must not exceed for an accurate peak load.
-const ACCURATE: f64 = 0.1;
+/// Part of the process zone that edges must not exceed for loads of cracks within 5 %.
+const ACCURATE: f64 = 0.05 / EXCESS_OF_PEAK;
 
 /// What a case asks of its mesh.
 pub(super) struct Demand {
@@ -178,7 +179,7 @@ fn zone_lines(solids: &Solids, demand: &Demand) -> String {
         };
         let [zone, most, accurate] = [length, most, accurate].map(|length| quantity(length, "m"));
         format!(
-            "\n  {}: process zone E Gf/ft\u{b2} = {zone}; where cracks go, edges below {most}, for an accurate peak load below \
+            "\n  {}: process zone E Gf/ft\u{b2} = {zone}; where cracks go, edges below {most}, for loads within 5 % below \
              {accurate}: {verdict}",
             printable(material)
         )

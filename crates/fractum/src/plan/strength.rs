@@ -38,7 +38,7 @@ impl Plan {
             }
             self.add("rate", text);
             // The largest length goes with one over the strength squared.
-            let (_, ratio) = scene.solid.length_report(index);
+            let ratio = scene.solid.length_report(index).largest_ratio;
             let most = (ratio.max(IN_RESERVE) / ratio).sqrt();
             let grows = if energy.is_empty() { "" } else { ", more where the fracture energy grows" };
             self.add(
