@@ -91,7 +91,7 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "_normal = 0.2 }",
             "_normal = 0.2, cohesion = 2e6 }\ndamage = { tensile_strength = 1e7, fracture_energy = 1e4 }",
-            "8:11: materials.steel.bedding.tensile_strength is missing; expected a pressure such as \"30 MPa\"",
+            "8:11: materials.steel.bedding.tensile_strength is missing; expected a pressure such as \"21 GPa\"",
         ),
         (
             "_normal = 0.2 }",

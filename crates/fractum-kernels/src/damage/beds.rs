@@ -2,7 +2,8 @@
 
 use core::f64::consts::PI;
 
-use crate::damage::restraint::{Seen, in_plane, obliquity};
+use crate::damage::restraint::{in_plane, obliquity};
+use crate::damage::seen::{Band, Seen};
 use crate::elementary::{cos, sin};
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
@@ -18,22 +19,6 @@ const OPENS: f64 = 2.0;
 /// Components of a plane body that bear stress.
 const IN_PLANE: &[usize] = &[0, 1, 3];
 const IN_SPACE: &[usize] = &[0, 1, 2, 3, 4, 5];
-
-/// What an edge of bedded rock keeps of the onset of its damage.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Band {
-    /// Equivalent stress over the largest principal one; zero where damage began by sliding or crushing.
-    pub pull: f64,
-    /// Factor on the characteristic length, by which modulus and fracture energy of the opening enter the softening.
-    pub longer: f64,
-    /// Direction of the pull that began it.
-    pub direction: Vec3,
-}
-
-impl Band {
-    /// That of an edge without beds.
-    pub const PLAIN: Band = Band { pull: 0.0, longer: 1.0, direction: Vec3::new(0.0, 0.0, 0.0) };
-}
 
 /// The planes of the beds, in which rock is weaker: Jaeger's plane of weakness (*Geol. Mag.* 97 (1960) 65-72) with a tension cut-off.
 #[derive(Clone, Copy, Debug)]

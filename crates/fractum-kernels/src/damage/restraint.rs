@@ -1,28 +1,10 @@
 //! What neighbours that hold a crack sideways add to the stress that it sees.
 
 use crate::Sym3;
-use crate::damage::Band;
+use crate::damage::seen::Seen;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::material::{Criterion, CriterionKind, Elastic, Hooke, Plane};
-
-/// What an edge sees in a step.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// Equivalent stress of its opening, as far as that counts [Pa]; the largest so far drives damage.
-    pub stress: f64,
-    /// Part of the largest effective principal stress that belongs to the opening, at most 1.
-    pub share: f64,
-    /// Sum of the lateral principal stresses at the onset of damage, if that is now [Pa].
-    pub lateral: f64,
-    /// What bedded rock keeps of the onset of damage, if that is now.
-    pub band: Band,
-}
-
-impl Seen {
-    /// An edge that sees nothing new.
-    pub const NOTHING: Seen = Seen { stress: 0.0, share: 1.0, lateral: f64::INFINITY, band: Band::PLAIN };
-}
 
 /// Lateral restraint of a crack.
 ///
