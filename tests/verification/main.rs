@@ -1,6 +1,7 @@
 //! Several crates against theory, without files. One test program: a new file is a line here.
 
 mod bars;
+mod bed_strength;
 mod bedding;
 mod closed_cracks;
 mod crack_pressure;

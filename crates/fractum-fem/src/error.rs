@@ -59,13 +59,15 @@ pub enum SolidError {
         /// Mean size of the elements where cracks go [m].
         size: f64,
     },
-    /// Damage in a body with beds.
-    #[error(
-        "body {body}: no damage in a material with bedding; expected bedding without damage, or damage without bedding"
-    )]
+    /// Damage in a body with beds that cannot have it so.
+    #[error("body {body}: damage with bedding knows no {found}; expected {expected}, or a material without bedding")]
     BeddedDamage {
         /// Name of the body.
         body: String,
+        /// What does not go together.
+        found: &'static str,
+        /// What would do.
+        expected: &'static str,
     },
     /// A phase field in a body that cannot have one.
     #[error("body {body}: no phase field with {reason}; expected {expected}, or no regularisation")]

@@ -58,8 +58,8 @@ pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
 pub use fractum_kernels::material::{
-    Bedding, Criterion, CriterionKind, DamageLaw, Degradation, EXCESS_OF_PEAK, Elastic, Plane, Softening, Stiffness,
-    Wave,
+    BedStrength, Bedding, Criterion, CriterionKind, DamageLaw, Degradation, EXCESS_OF_PEAK, Elastic, Plane, Softening,
+    Stiffness, Wave,
 };
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};

@@ -318,6 +318,7 @@ impl EdgeField {
         // With unilateral damage the closed part keeps its stress; an intact edge needs no search for it.
         match (damage, &self.softens.friction) {
             (0.0, _) => (full, 0.0),
+            (damage, None) if elasticity.bedded.is_some() => (full * (1.0 - damage), damage),
             (damage, None) => (full - self.softens.opening_stress(strain) * damage, damage),
             (damage, Some(friction)) => {
                 (full * (1.0 - damage) + friction.load(strain, &mut slip, limit) * damage, damage)

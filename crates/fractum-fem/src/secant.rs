@@ -3,7 +3,7 @@
 //! The cells and laws are those of the explicit kernel. A trial leaves the history of the edges alone; it advances when
 //! [`Solid::update_internal_forces`] sees the displacements that were found.
 
-use fractum_kernels::damage::{EdgeDamage, Seen, Taken};
+use fractum_kernels::damage::{Band, EdgeDamage, Seen, Taken};
 use fractum_kernels::material::Stiffness;
 use fractum_math::{Mat3, Ragged, Sym3, Vec3};
 
@@ -99,6 +99,8 @@ pub struct DamagePoint {
     pub lateral: f64,
     /// Part of the largest effective principal stress that belonged to the opening when κ last grew.
     pub share: f64,
+    /// What an edge of bedded rock has kept of the onset of its damage.
+    pub band: Band,
 }
 
 /// Why a solid cannot be treated by secant stiffness.
@@ -200,10 +202,13 @@ impl Solid {
         for (body, field) in self.edge_fields() {
             let model = &self.bodies[body].body;
             let energy = model.damage.as_ref().map_or(0.0, |zone| zone.law.fracture_energy);
-            for (index, &EdgeDamage { broken, damage, lateral, share, .. }) in field.state.iter().enumerate() {
+            let longest = field.softens.beds.as_ref().map_or(1.0, |beds| beds.longest);
+            for (index, edge) in field.state.iter().enumerate() {
+                let &EdgeDamage { broken, damage, lateral, share, .. } = edge;
+                let longer = if longest == 1.0 || lateral == f64::INFINITY { longest } else { edge.band().longer };
                 let kappa = field.onset(index);
                 let softening =
-                    field.softens.restraint.modulus * energy / (field.length[index] * field.strength[index]);
+                    field.softens.restraint.modulus * energy / (field.length[index] * longer * field.strength[index]);
                 points.push(DamagePoint {
                     body,
                     kappa,
@@ -212,6 +217,7 @@ impl Solid {
                     damage,
                     lateral,
                     share,
+                    band: edge.band(),
                     strength: field.strength[index],
                 });
             }
@@ -242,11 +248,21 @@ impl Solid {
         seen.extend(points.iter().zip(stresses).map(|(point, &stress)| {
             let model = &self.bodies[point.body];
             let criterion = self.criterion(point.body);
-            if criterion.surely_below(stress, threshold(point)) {
+            let beds = model.softens.as_ref().and_then(|softens| softens.beds.as_ref());
+            let threshold = threshold(point);
+            let is_below = match beds {
+                Some(beds) => beds.surely_below(criterion, stress, threshold),
+                None => criterion.surely_below(stress, threshold),
+            };
+            if is_below {
                 return Seen { share: point.share, ..Seen::NOTHING };
             }
-            let (q, history) = (criterion.equivalent_stress(stress), [point.strength, point.kappa, point.lateral]);
-            match model.body.restraint().seen(criterion, history, stress, q) {
+            let history = [point.strength, point.kappa, point.lateral];
+            let seen = match beds {
+                Some(beds) => beds.seen(criterion, history, point.band, stress),
+                None => model.body.restraint().seen(criterion, history, stress, criterion.equivalent_stress(stress)),
+            };
+            match seen {
                 seen if seen.stress > point.kappa => seen,
                 seen => Seen { share: point.share, ..seen },
             }

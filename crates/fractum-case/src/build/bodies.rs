@@ -258,6 +258,13 @@ pub(super) fn solid_bodies<'a>(
                     "the smoothed formulation, whose cracks alone can close and rub; remove one of the two",
                 );
             }
+            if let Some(beds) = material.bedding.as_ref().filter(|_| body.formulation == Formulation::Standard) {
+                context.error(
+                    &beds.place,
+                    " beside damage with the standard formulation",
+                    "the smoothed formulation, whose edges alone know of beds; remove one of the three",
+                );
+            }
             body.damage = Some(damage_zone(context, (part, index), &body, &damage.value, numbering, boundary));
         }
         bodies.push(body);
@@ -278,6 +285,7 @@ fn damage_zone(
     let region = if part.body.damage_where.is_some() { Region::Edges(marked) } else { Region::Everywhere };
     // Rock that has failed under pressure goes on bearing it.
     let crushes = damage.law.criterion.kind() != CriterionKind::Rankine && context.case.is_blast();
+    let crushes = crushes && body.bedding.is_none();
     let by_scene = crushes && body.formulation == Formulation::Smoothed && damage.law.friction.is_none();
     let unilateral = damage.unilateral.unwrap_or(by_scene);
     DamageZone {

@@ -1,6 +1,6 @@
 //! Materials: elasticity, damage, contact.
 
-use fractum_fem::{Bedding, CriterionKind, DamageLaw, RateCurves, Regularisation};
+use fractum_fem::{BedStrength, Bedding, CriterionKind, DamageLaw, RateCurves, Regularisation};
 use fractum_scene::ContactParameters;
 
 use super::{BondFailure, Bonds, Interfaces, Scatter, Thermal};
@@ -41,6 +41,8 @@ pub struct Material {
 pub struct Beds {
     /// Normal of the beds, and elasticity along it.
     pub law: Bedding,
+    /// Strength of their planes, where rock is weaker along them.
+    pub strength: Option<BedStrength>,
     /// Whether the normal comes from dip and dip direction.
     pub by_dip: bool,
     /// Whether the shear modulus is Saint-Venant's estimate.

@@ -32,14 +32,13 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         super::bedding::bedding(table, density.zip(young_modulus).zip(poisson_ratio))
             .map(|beds| Spanned::new(beds, place))
     });
-    let damage = table.table("damage").map(|table| {
+    let mut damage = table.table("damage").map(|table| {
         let place = table.place.clone();
         damage(table, poisson_ratio).map(|damage| Spanned::new(damage, place))
     });
-    if let (Some(Some(beds)), Some(_)) = (&bedding, &damage) {
-        let found = "beside damage, which does not know the direction of beds";
-        let note = Diagnostic::error(&beds.place, found).expected("one of the two tables");
-        table.reader.note(note.remedy("remove bedding or damage; a bed that may open can be an interface"));
+    // A damage that is wrong itself says nothing about beds.
+    if let (Some(Some(beds)), None | Some(Some(_))) = (&bedding, &damage) {
+        super::bedding::settle(&table, beds, damage.as_mut().and_then(Option::as_mut));
     }
     let bonds = table.table("bonds").map(|table| {
         let place = table.place.clone();
@@ -133,6 +132,7 @@ fn damage(table: Table<'_>, poisson_ratio: Option<f64>) -> Option<Damage> {
             unilateral: false,
             friction: friction?.filter(|_| !is_spread),
             rate_time,
+            beds: None,
         },
         unilateral: unilateral?,
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,

@@ -168,6 +168,7 @@ fn documented_defaults_are_the_defaults() {
         (text.as_str(), "mortar", "bodies[8]", ""),
         (text.as_str(), "cement", "bodies[10]", ""),
         (text.as_str(), "grout", "bodies[11]", ""),
+        (text.as_str(), "shale", "bodies[12]", ""),
         (SMALL, "steel", "bodies[0]", ""),
         (BONDED_AT_REST, "steel", "bodies[0]", ""),
         (breaking.as_str(), "steel", "bodies[0]", ""),

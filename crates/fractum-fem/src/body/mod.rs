@@ -4,8 +4,8 @@ pub(crate) mod rate;
 
 use std::sync::Arc;
 
-use fractum_kernels::damage::{Restraint, Softens};
-use fractum_kernels::material::{Bedding, DamageLaw, Elastic, Hooke, Plane};
+use fractum_kernels::damage::{Beds, Restraint, Softens};
+use fractum_kernels::material::{Bedding, CriterionKind, DamageLaw, Elastic, Hooke, Plane};
 use serde::{Deserialize, Serialize};
 
 use self::rate::RateCurves;
@@ -103,7 +103,7 @@ pub struct Body {
     pub elements: Arc<Vec<[u32; 4]>>,
     /// Elasticity; of bedded rock within the beds.
     pub elastic: Elastic,
-    /// Beds, which only elastic bodies may have.
+    /// Beds.
     pub bedding: Option<Bedding>,
     /// Where strain and stress live.
     pub formulation: Formulation,
@@ -177,7 +177,26 @@ impl Body {
     /// What its edges share, where it may be damaged.
     pub(crate) fn softens(&self) -> Option<Softens> {
         let zone = self.damage.as_ref()?;
-        Some(Softens::new(&zone.law, self.hooke(), self.restraint()))
+        let softens = Softens::new(&zone.law, self.hooke(), self.restraint());
+        let Some(bedding) = &self.bedding else { return Some(softens) };
+        let beds = Beds::new(&self.elastic, bedding, self.across(), &zone.law, softens.restraint.modulus);
+        Some(softens.bedded(beds))
+    }
+
+    /// What a body with beds that may be damaged must not have, and what would do.
+    pub(crate) fn against_beds(&self) -> Option<[&'static str; 2]> {
+        let zone = self.damage.as_ref().filter(|_| self.bedding.is_some())?;
+        let law = &zone.law;
+        let against = [
+            (self.formulation == Formulation::Standard, ["the standard formulation", "the smoothed formulation"]),
+            (zone.regularisation.is_some(), ["a phase field", "local damage"]),
+            (law.criterion.kind() == CriterionKind::Mazars, ["Mazars' criterion", "another criterion"]),
+            (law.unilateral, ["cracks that close", "unilateral = false"]),
+            (law.friction.is_some(), ["friction of cracks", "no friction"]),
+            (law.rate_time > 0.0, ["rate_time", "no rate_time"]),
+            (zone.rate.is_some(), ["strength by the rate of strain", "no rate"]),
+        ];
+        against.into_iter().find_map(|(has, words)| has.then_some(words))
     }
 
     /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.

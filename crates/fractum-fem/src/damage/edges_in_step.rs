@@ -1,6 +1,6 @@
 //! The edges of a block of smoothed cells in a step: their strains, the growth of their damage, the stress that is left.
 
-use fractum_kernels::damage::{CrackFriction, EdgeDamage, Rubbed, RubbingStep, Taken};
+use fractum_kernels::damage::{Beds, CrackFriction, EdgeDamage, Rubbed, RubbingStep, Seen, Taken};
 use fractum_math::{FOUR, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
@@ -54,8 +54,8 @@ impl EdgesInStep<'_> {
     pub(crate) fn settle(&mut self, cell: usize) {
         let strain = self.step.strain_now(self.cells, cell);
         let EdgeField { softens, threshold, .. } = &*self.field;
-        let stress = softens.hooke.stress(strain);
-        if softens.criterion.surely_below(stress, threshold[cell]) {
+        let stress = softens.stress(strain);
+        if softens.beds.is_none() && softens.criterion.surely_below(stress, threshold[cell]) {
             return;
         }
         loaded_stress(self, cell, strain, stress);
@@ -63,9 +63,9 @@ impl EdgesInStep<'_> {
         self.keep_strain_before(cell);
     }
 
-    /// Keeps the strain of the step before; cracks that rub keep their slip instead.
+    /// Keeps the strain of the step before; cracks that rub keep their slip instead, and edges of bedded rock their band.
     fn keep_strain_before(&mut self, cell: usize) {
-        if self.field.softens.friction.is_none() {
+        if self.field.softens.friction.is_none() && self.field.softens.beds.is_none() {
             self.field.state[cell].strain = self.step.strain_before(self.cells, cell);
         }
     }
@@ -84,7 +84,7 @@ impl EdgesInStep<'_> {
             let closed = friction.stress(elastic).dot(elastic);
             [field.softens.hooke.stress(strain).dot(strain) - closed, closed].map(|energy| 0.5 * energy * volume)
         } else {
-            let (opening, full) = (field.softens.opening_stress(strain), field.softens.hooke.stress(strain));
+            let (opening, full) = (field.softens.opening_stress(strain), field.softens.stress(strain));
             [opening, full - opening].map(|s| 0.5 * s.dot(strain) * volume)
         };
         let needed = 1.0 - ((most - closed) / open).max(0.0);
@@ -125,6 +125,22 @@ impl EdgesInStep<'_> {
         edge.strain = strain;
         let left = 1.0 - edge.damage;
         let nominal = closed.map_or(stress * left, |closed| (stress - closed) * left + closed);
+        if let Some(energy) = energy {
+            *energy += 0.5 * nominal.dot(strain) * volume;
+        }
+        nominal * volume
+    }
+
+    /// The same in bedded rock, whose edges keep no strain.
+    fn part(&mut self, cell: usize, strain: Sym3, stress: Sym3, seen: Seen) -> Sym3 {
+        let EdgesInStep { field, dissipated, energy, cells, step, .. } = self;
+        let volume = cells.volume[cell];
+        let growth = field.load(cell, seen, stress, step.dt);
+        if growth > 0.0 {
+            let before = step.strain_before(cells, cell);
+            *dissipated += Taken::straight(0.5 * stress.dot(before)).by(growth) * volume;
+        }
+        let nominal = stress * (1.0 - field.state[cell].damage);
         if let Some(energy) = energy {
             *energy += 0.5 * nominal.dot(strain) * volume;
         }
@@ -193,6 +209,29 @@ impl CellLaw for RubbingEdges<'_> {
     }
 }
 
+/// The same in bedded rock.
+pub(crate) struct BeddedEdges<'a>(pub(crate) EdgesInStep<'a>);
+
+impl CellLaw for BeddedEdges<'_> {
+    const IS_COAXIAL: bool = false;
+
+    #[inline(always)]
+    fn scaled_stress(&mut self, cell: usize, strain: Sym3, _volume: f64) -> Sym3 {
+        let EdgeField { softens, threshold, .. } = &*self.0.field;
+        let stress = softens.stress(strain);
+        let is_below = |beds: &Beds| beds.surely_below(&softens.criterion, stress, threshold[cell]);
+        if softens.beds.as_ref().is_some_and(is_below) {
+            return self.0.intact_stress(cell, strain, stress);
+        }
+        loaded_stress(&mut self.0, cell, strain, stress)
+    }
+
+    #[inline(always)]
+    fn integrity(&self, cell: usize) -> f64 {
+        self.0.integrity(cell)
+    }
+}
+
 /// The same four at a time, with the bits that each edge has alone.
 pub(crate) struct FourEdgesInStep<'a>(pub(crate) EdgesInStep<'a>);
 
@@ -237,9 +276,13 @@ widest! {
 
 #[inline(always)]
 fn loaded_one(edges: &mut EdgesInStep<'_>, cell: usize, strain: Sym3, stress: Sym3) -> Sym3 {
-    let EdgeField { softens, state, .. } = &*edges.field;
+    let EdgeField { softens, state, strength, .. } = &*edges.field;
     if let Some(friction) = softens.friction {
         return edges.rub(cell, strain, stress, &friction);
+    }
+    if let Some(beds) = &softens.beds {
+        let seen = softens.see_with_beds(beds, &state[cell], strength[cell], stress);
+        return edges.part(cell, strain, stress, seen);
     }
     let q = softens.equivalent(&state[cell], stress, edges.step.dt);
     let closed = softens.closed_stress(strain);

@@ -51,9 +51,10 @@ pub struct LengthReport {
 impl Threshold {
     /// Characteristic lengths c · mean (regular edge of the sharing elements), and the guard against snap-back.
     ///
+    /// - `longest`: largest factor on a characteristic length, by the direction of beds
     /// - `known`: edges that it shall know, ascending, where several ranks know some each and all call it; none for all
     pub(crate) fn new(
-        body: &Body,
+        (body, longest): (&Body, f64),
         zone: &DamageZone,
         edges: &BodyEdges,
         nodes: &[Vec3],
@@ -74,7 +75,7 @@ impl Threshold {
         let (mut lengths, mut strength) = (Lengths::default(), Vec::with_capacity(length.len()));
         for (place, &length) in length.iter().enumerate() {
             let edge = known.map_or(place as u32, |known| known[place]);
-            strength.push(lengths.arm(body, zone, edge, phase.as_ref().ok_or(length)));
+            strength.push(lengths.arm((body, longest), zone, edge, phase.as_ref().ok_or(length)));
         }
         if let Some(exchange) = exchange {
             lengths = gather(exchange, &lengths).into_iter().fold(Lengths::default(), Lengths::with);
@@ -140,7 +141,13 @@ impl Lengths {
     /// Strength of an edge [Pa], lowered to fit its length; infinite where damage may not occur.
     ///
     /// - `over`: the phase field by which it softens, or without one its length [m]
-    fn arm(&mut self, body: &Body, zone: &DamageZone, edge: u32, over: Result<&PhaseLaw, f64>) -> f64 {
+    fn arm(
+        &mut self,
+        (body, longest): (&Body, f64),
+        zone: &DamageZone,
+        edge: u32,
+        over: Result<&PhaseLaw, f64>,
+    ) -> f64 {
         if matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]) {
             return f64::INFINITY;
         }
@@ -152,7 +159,7 @@ impl Lengths {
         let (length, reserve) = over.map_or_else(|length| (length, IN_RESERVE), |law| (law.length, 1.0));
         let limit_of = |strength| match over {
             Ok(law) => law.largest_length(strength),
-            Err(_) => zone.law.softening.largest_length(modulus, strength, energy),
+            Err(_) => zone.law.softening.largest_length(modulus, strength, energy) / longest,
         };
         let fits = |strength: f64| strength * (reserve / (length / limit_of(strength))).sqrt();
         if strength > given {

@@ -31,8 +31,8 @@ impl BodyModel {
         chosen: Chosen,
         first_block: usize,
     ) -> Result<(Self, Vec<Block>), SolidError> {
-        if body.bedding.is_some() && body.damage.is_some() {
-            return Err(SolidError::BeddedDamage { body: body.name });
+        if let Some([found, expected]) = body.against_beds() {
+            return Err(SolidError::BeddedDamage { body: body.name, found, expected });
         }
         let elasticity = Elasticity::new(&body);
         let smoothed = body.formulation == Formulation::Smoothed;
@@ -49,7 +49,10 @@ impl BodyModel {
         let own = bundles_of_share.as_ref().filter(|_| known.is_some()).map(|bundles| items_of(bundles));
         let threshold = match (&body.damage, &edges) {
             (Some(zone), Some(edges)) => {
-                Some(Threshold::new(&body, zone, edges, nodes, volumes, own.as_deref().zip(chosen.exchange))?)
+                let longest =
+                    softens.as_ref().and_then(|softens| softens.beds.as_ref()).map_or(1.0, |beds| beds.longest);
+                let known = own.as_deref().zip(chosen.exchange);
+                Some(Threshold::new((&body, longest), zone, edges, nodes, volumes, known)?)
             }
             _ => None,
         };
@@ -68,7 +71,7 @@ impl BodyModel {
         let lengths = threshold.as_ref().map_or_else(LengthReport::default, |t| t.report);
         let phase = threshold.as_ref().and_then(|t| t.phase).map(|law| Box::new(PhaseField::new(law, edge_count)));
         let around = edges.as_ref().and_then(BodyEdges::table_of_elements);
-        let standard = match (softens, threshold, around) {
+        let standard = match (softens.clone(), threshold, around) {
             (Some(softens), Some(t), Some(around)) if !smoothed => {
                 let mut field = EdgeField::new(softens, (0..edge_count as u32).collect(), &t);
                 field.keep_histories();
@@ -80,6 +83,7 @@ impl BodyModel {
         let model = BodyModel {
             body,
             elasticity,
+            softens,
             viscosity: None,
             alive,
             volumes: OnceLock::new(),

@@ -1,5 +1,6 @@
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
+use fractum_kernels::damage::Softens;
 use fractum_parallel::Exchange;
 
 use crate::body::Body;
@@ -17,6 +18,8 @@ use crate::divided::places::Places;
 pub(crate) struct BodyModel {
     pub(crate) body: Body,
     pub(crate) elasticity: Elasticity,
+    /// What its edges share, where it may be damaged.
+    pub(crate) softens: Option<Arc<Softens>>,
     pub(crate) viscosity: Option<BodyViscosity>,
     pub(crate) alive: Vec<bool>,
     /// Volumes of the elements without load [m³], once something asks for them.

@@ -9,7 +9,7 @@ use crate::cells::cell::Bundle;
 use crate::cells::kernel::{self, BornCells, ElasticCells, ExpandingCells, Viscous};
 use crate::cells::viscosity::ViscousCells;
 use crate::damage::edge::EdgeField;
-use crate::damage::edges_in_step::{Advance, EdgesInStep, FourEdgesInStep, RubbingEdges};
+use crate::damage::edges_in_step::{Advance, BeddedEdges, EdgesInStep, FourEdgesInStep, RubbingEdges};
 use crate::damage::standard::{self, StandardCells};
 use crate::solid::body_model::BodyModel;
 
@@ -121,12 +121,18 @@ impl Block {
                 let step = Advance { displacement, velocity, dt, kinematics: model.body.kinematics };
                 let by_fours = field.softens.is_unilateral() || field.is_mostly_damaged();
                 let rubs = field.softens.friction.is_some();
+                let has_beds = field.softens.beds.is_some();
                 let [dissipated, rubbed] = [self.dissipated, self.rubbed];
                 let mut law = EdgesInStep { field, cells, step, energy: start, dissipated, rubbed };
                 let outcome = if rubs {
                     let mut rubbing = RubbingEdges(law);
                     let outcome = run(model, cells, scratch, &mut rubbing, viscous);
                     law = rubbing.0;
+                    outcome
+                } else if has_beds {
+                    let mut bedded = BeddedEdges(law);
+                    let outcome = run(model, cells, scratch, &mut bedded, viscous);
+                    law = bedded.0;
                     outcome
                 } else if by_fours {
                     let mut fours = FourEdgesInStep(law);

@@ -2,15 +2,18 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::damage::{CrackFriction, Restraint, Seen, Taken};
+use crate::damage::{Band, Beds, CrackFriction, Restraint, Seen, Taken};
 use crate::material::{Criterion, DamageLaw, Hooke, Softening, equivalent_stresses};
-use crate::{FOUR, Lane, Sym3, negative_parts};
+use crate::{FOUR, Lane, Sym3, Vec3, negative_parts};
 
 /// An equivalent stress beyond all that occur [Pa], of which the square is a number.
 pub const ABOVE_ALL: f64 = 1e100;
 
 /// Volume strain over κ/E' from which on a crack that rubs counts as open: 1 where a crack opens straight. Parts of a crack that slides open and close.
 const OPENED: f64 = 0.5;
+
+/// Characteristic length of an edge of bedded rock over the one at which its softening snaps back, at most.
+const MOST_OF_LENGTH: f64 = 0.95;
 
 /// History of one edge.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,7 +27,8 @@ pub struct EdgeDamage {
     /// Part of the largest effective principal stress that belonged to the opening when κ last grew; where cracks rub, what their friction allows
     /// ([`CrackFriction::limit`]), 1 before the onset.
     pub share: f64,
-    /// Strain at the last step, kept from the onset of damage on; where cracks rub, the slip that friction has taken since then.
+    /// Strain at the last step, kept from the onset of damage on; where cracks rub, the slip that friction has taken since then; in bedded rock what
+    /// [`EdgeDamage::band`] reads.
     pub strain: Sym3,
     /// Whether the residual stress ratio has fallen to the limit.
     pub broken: bool,
@@ -42,6 +46,13 @@ impl EdgeDamage {
             strain: Sym3::ZERO,
             broken: false,
         }
+    }
+
+    /// What an edge of bedded rock has kept of the onset of its damage.
+    #[inline]
+    pub fn band(&self) -> Band {
+        let [pull, longer, x, y, z, _] = self.strain.0;
+        Band { pull, longer, direction: Vec3::new(x, y, z) }
     }
 
     /// What the cheap test compares with: never passed by a damaged edge.
@@ -67,6 +78,8 @@ pub struct Softens {
     /// Friction of closed cracks, where they rub.
     pub friction: Option<CrackFriction>,
     rate_time: f64,
+    /// Beds of the rock; their elasticity stands in place of `hooke`.
+    pub beds: Option<Beds>,
     /// Damage comes from a phase field; histories only keep what it is driven by.
     pub regularised: bool,
 }
@@ -85,8 +98,20 @@ impl Softens {
             unilateral,
             friction: friction.map(|coefficient| CrackFriction::new(coefficient, &hooke)),
             rate_time,
+            beds: None,
             regularised: restraint.is_spread,
         }
+    }
+
+    /// The same in bedded rock.
+    pub fn bedded(self, beds: Beds) -> Self {
+        Softens { beds: Some(beds), ..self }
+    }
+
+    /// Effective stress of a strain [Pa].
+    #[inline]
+    pub fn stress(&self, strain: Sym3) -> Sym3 {
+        self.beds.as_ref().map_or_else(|| self.hooke.stress(strain), |beds| beds.stiffness.stress(strain))
     }
 
     /// Whether cracks close, so that damage acts on a part of the stress only.
@@ -98,7 +123,7 @@ impl Softens {
     /// Effective stress that damage acts on [Pa].
     #[inline]
     pub fn opening_stress(&self, strain: Sym3) -> Sym3 {
-        let stress = self.hooke.stress(strain);
+        let stress = self.stress(strain);
         self.closed_stress(strain).map_or(stress, |closed| stress - closed)
     }
 
@@ -194,11 +219,31 @@ impl Softens {
         self.restraint.seen(&self.criterion, [strength, edge.kappa, edge.lateral], stress, q)
     }
 
+    /// The same in bedded rock.
+    pub fn see_with_beds(&self, beds: &Beds, edge: &EdgeDamage, strength: f64, stress: Sym3) -> Seen {
+        beds.seen(&self.criterion, [strength, edge.kappa, edge.lateral], edge.band(), stress)
+    }
+
+    /// Characteristic length by which an edge of bedded rock softens, below the one at which it would snap back.
+    fn length_of(&self, band: Band, strength: f64, length: f64) -> f64 {
+        let longest = self.softening.largest_length(self.restraint.modulus, strength, self.fracture_energy);
+        (length * band.longer).min(MOST_OF_LENGTH * longest)
+    }
+
     /// Advances the history of an edge to what it sees; returns the growth of damage.
     #[inline(always)]
     pub fn load(&self, edge: &mut EdgeDamage, seen: Seen, strength: f64, length: f64, dt: f64) -> f64 {
         if seen.stress <= edge.kappa {
             return 0.0;
+        }
+        let mut length = length;
+        if self.beds.is_some() {
+            if edge.lateral == f64::INFINITY {
+                let Band { pull, longer, direction } = seen.band;
+                let [x, y, z] = direction.into();
+                edge.strain = Sym3([pull, longer, x, y, z, 0.0]);
+            }
+            length = self.length_of(edge.band(), strength, length);
         }
         (edge.share, edge.lateral) = (seen.share, edge.lateral.min(seen.lateral));
         if self.regularised {

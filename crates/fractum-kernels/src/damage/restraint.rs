@@ -1,25 +1,10 @@
 //! What neighbours that hold a crack sideways add to the stress that it sees.
 
 use crate::Sym3;
+use crate::damage::seen::Seen;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::material::{Criterion, CriterionKind, Elastic, Hooke, Plane};
-
-/// What an edge sees in a step.
-#[derive(Clone, Copy, Debug)]
-pub struct Seen {
-    /// Equivalent stress of its opening, as far as that counts [Pa]; the largest so far drives damage.
-    pub stress: f64,
-    /// Part of the largest effective principal stress that belongs to the opening, at most 1.
-    pub share: f64,
-    /// Sum of the lateral principal stresses at the onset of damage, if that is now [Pa].
-    pub lateral: f64,
-}
-
-impl Seen {
-    /// An edge that sees nothing new.
-    pub const NOTHING: Seen = Seen { stress: 0.0, share: 1.0, lateral: f64::INFINITY };
-}
 
 /// Lateral restraint of a crack.
 ///
@@ -94,7 +79,7 @@ impl Restraint {
         };
         let lateral = sum - first;
         if at_onset == f64::INFINITY {
-            return Seen { stress: q, share: 1.0, lateral: lateral * (kappa / q) };
+            return Seen { stress: q, lateral: lateral * (kappa / q), ..Seen::NOTHING };
         }
         let more = lateral - at_onset;
         if more <= 0.0 || first <= 0.0 {
@@ -104,31 +89,16 @@ impl Restraint {
         let stress = if is_rankine { opening } else { q.min(self.released(criterion, stress, more)) };
         let share = (opening / first).max(0.0);
         if stress <= strength {
-            return Seen { stress, share, lateral: at_onset };
+            return Seen { stress, share, lateral: at_onset, ..Seen::NOTHING };
         }
-        let obliquity = || self.obliquity(more / (first - strength)).sqrt();
+        let obliquity = || obliquity(self.askew, self.thickness.is_some(), more / (first - strength)).sqrt();
         let divisor = match (self.is_spread, self.thickness) {
             (false, _) => obliquity(),
             (true, Some(_)) => obliquity().sqrt(),
             (true, None) => 1.0,
         };
         let counted = strength + (stress - strength) / divisor;
-        Seen { stress: counted, share: share * (counted / stress), lateral: at_onset }
-    }
-
-    /// m.
-    ///
-    /// - `ratio`: growth of the lateral sum since the onset over that of the largest principal stress
-    #[inline(always)]
-    fn obliquity(&self, ratio: f64) -> f64 {
-        let askew = self.askew;
-        let fallen = match self.thickness {
-            Some(_) => (askew - ratio) / (1.0 - askew * ratio),
-            None => (2.0 * askew - ratio) / (1.0 + askew - askew * ratio),
-        };
-        // A band that cannot move sideways at all, and numbers beyond that, leave 1.
-        let fallen = fallen.clamp(0.0, 1.0);
-        ((1.0 - askew * fallen) / (1.0 - 2.0 * askew * fallen + fallen * fallen)).max(1.0)
+        Seen { stress: counted, share: share * (counted / stress), lateral: at_onset, ..Seen::NOTHING }
     }
 
     /// Equivalent stress without what restraint adds: principal stresses with `more` of the lateral sum and its effect on the first taken away [Pa].
@@ -149,9 +119,24 @@ impl Restraint {
     }
 }
 
+/// m.
+///
+/// - `askew`: ν̂; `ratio`: growth of the lateral sum since the onset over that of the largest principal stress
+#[inline(always)]
+pub(super) fn obliquity(askew: f64, is_plane: bool, ratio: f64) -> f64 {
+    let fallen = if is_plane {
+        (askew - ratio) / (1.0 - askew * ratio)
+    } else {
+        (2.0 * askew - ratio) / (1.0 + askew - askew * ratio)
+    };
+    // A band that cannot move sideways at all, and numbers beyond that, leave 1.
+    let fallen = fallen.clamp(0.0, 1.0);
+    ((1.0 - askew * fallen) / (1.0 - 2.0 * askew * fallen + fallen * fallen)).max(1.0)
+}
+
 /// Principal stresses in the plane, the larger first.
 #[inline(always)]
-fn in_plane(stress: Sym3) -> [f64; 2] {
+pub(super) fn in_plane(stress: Sym3) -> [f64; 2] {
     let [xx, yy, _, xy, ..] = stress.0;
     let (middle, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
     let radius = (half * half + xy * xy).sqrt();

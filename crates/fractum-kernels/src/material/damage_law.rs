@@ -23,6 +23,21 @@ pub struct DamageLaw {
     pub friction: Option<f64>,
     /// Relaxation time of the damage driving force [s]; 0 is rate-independent.
     pub rate_time: f64,
+    /// Strength of the planes of beds, where rock is weaker along them.
+    pub beds: Option<BedStrength>,
+}
+
+/// Strength of the planes of beds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BedStrength {
+    /// Tensile strength across them f_b, at most that of the rock [Pa].
+    pub tensile_strength: f64,
+    /// Cohesion along them c_b, at least f_b tan φ [Pa].
+    pub cohesion: f64,
+    /// Angle of friction φ [rad].
+    pub friction_angle: f64,
+    /// Energy per area of a crack that parts them [J/m²].
+    pub fracture_energy: f64,
 }
 
 /// How much too high the load of a crack comes out under local damage, over the size of the elements at its tip in process zones: the mean of rows and of
@@ -43,6 +58,7 @@ impl DamageLaw {
             unilateral: false,
             friction: None,
             rate_time: 0.0,
+            beds: None,
         }
     }
 

@@ -3,6 +3,7 @@
 //! A new law is a new row. A failure names the row and the draw, which is the same on every machine.
 
 mod bedding;
+mod beds;
 mod bond;
 mod contact;
 mod damage;
@@ -134,6 +135,8 @@ const LAWS: &[Row] = &[
     Row { law: "liquid between walls", holds: liquid::flow },
     Row { law: "leak-off", holds: liquid::leak },
     Row { law: "edge whose closed crack rubs", holds: damage::rubbing },
+    Row { law: "strength of beds, by angle", holds: beds::by_angle },
+    Row { law: "strength of beds, any way", holds: beds::way },
 ];
 
 #[test]

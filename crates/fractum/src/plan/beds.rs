@@ -26,6 +26,18 @@ impl Plan {
                 quantity(law.shear_modulus, "Pa"),
             ),
         );
+        if let Some(strength) = beds.strength.filter(|_| body.damage.is_some()) {
+            self.add(
+                "",
+                format!(
+                    "planes of the beds: tensile strength {}, cohesion {}, angle of friction {} deg, fracture energy {}",
+                    quantity(strength.tensile_strength, "Pa"),
+                    quantity(strength.cohesion, "Pa"),
+                    significant(strength.friction_angle.to_degrees(), 4),
+                    quantity(strength.fracture_energy, "J/m^2"),
+                ),
+            );
+        }
         if let Some(moduli) = body.extreme_moduli() {
             let [fastest, slowest] = moduli.map(|modulus| quantity((modulus / elastic.density).sqrt(), "m/s"));
             self.add(

@@ -267,6 +267,10 @@ fn of_material(material: &Material) -> String {
     ];
     if let Some(beds) = &material.bedding {
         parts.push(format!("along the normal of its beds E' = {}", quantity(beds.value.law.young_modulus, "Pa")));
+        if let Some(strength) = &beds.value.strength {
+            parts.push(format!("tensile strength across its beds {}", quantity(strength.tensile_strength, "Pa")));
+            parts.push(format!("cohesion along them {}", quantity(strength.cohesion, "Pa")));
+        }
     }
     if let Some(damage) = &material.damage {
         let law = &damage.value.law;
