@@ -102,25 +102,25 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "_normal = 0.2 }",
             "_normal = 0.2, tensile_strength = 2e6, cohesion = 2e7, fracture_energy = 1e5 }\ndamage = { tensile_strength = 1e7, fracture_energy = 1e4 }",
-            "8:159: materials.steel.bedding.fracture_energy is 100 kJ/m^2, more than that of the rock; expected at most damage.fracture_energy, 10 kJ/m^2; \
+            "8:149: materials.steel.bedding.fracture_energy is 100 kJ/m², more than that of the rock; expected at most damage.fracture_energy, 10 kJ/m²; \
              lower it, or raise that of the rock",
         ),
         (
             "_normal = 0.2 }",
             "_normal = 0.2, tensile_strength = 2e6, friction_angle = \"45 deg\", cohesion = 1e6, fracture_energy = 1e3 }\n\
              damage = { tensile_strength = 1e7, fracture_energy = 1e4 }",
-            "8:161: materials.steel.bedding.cohesion = 1e6; expected at least 2 MPa, tensile_strength times the tangent of friction_angle: with less, planes \
+            "8:153: materials.steel.bedding.cohesion = 1e6; expected at least 2 MPa, tensile_strength times the tangent of friction_angle: with less, planes \
              would part by sliding before they bear it",
         ),
         (
             "_normal = 0.2 }",
             "_normal = 0.2 }\ndamage = { tensile_strength = 1e7, fracture_energy = 1e4, unilateral = true }",
-            "9:77: materials.steel.damage.unilateral beside bedding, with which it has not been tried; expected false; remove it, or the table bedding",
+            "9:72: materials.steel.damage.unilateral beside bedding, with which it has not been tried; expected false; remove it, or the table bedding",
         ),
         (
             "_normal = 0.2 }",
             "_normal = 0.2 }\ndamage = { tensile_strength = 1e7, fracture_energy = 1e4, criterion = \"mazars\" }",
-            "9:76: materials.steel.damage.criterion beside bedding, with which it has not been tried; expected another criterion; remove it, or the table \
+            "9:71: materials.steel.damage.criterion beside bedding, with which it has not been tried; expected another criterion; remove it, or the table \
              bedding",
         ),
         (
