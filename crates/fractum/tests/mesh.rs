@@ -135,9 +135,9 @@ fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
     let plain = info(&[]);
     assert!(plain.contains("edges of tetrahedra: 0.04 to ") && !plain.contains("process zone"), "{plain}");
     let beside = info(&["--case", "case.toml"]);
-    // 30 GPa x 100 J/m2 / (3 MPa)2; twice and a tenth of that.
+    // 30 GPa x 100 J/m2 / (3 MPa)2; twice and a sixteenth of that.
     for part in
-        ["edges of tetrahedra: 40 mm to ", "E Gf/ft\u{b2} = 333.3 mm", "below 666.7 mm", "below 33.33 mm: coarse"]
+        ["edges of tetrahedra: 40 mm to ", "E Gf/ft\u{b2} = 333.3 mm", "below 666.7 mm", "below 20.83 mm: coarse"]
     {
         assert!(beside.contains(part), "{part}: {beside}");
     }

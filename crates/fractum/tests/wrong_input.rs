@@ -21,7 +21,7 @@ young_modulus = "30 GPa"
 poisson_ratio = 0.2
 [materials.concrete.damage]
 tensile_strength = "3 MPa"
-fracture_energy = "100 J/m^2"
+fracture_energy = "250 J/m^2"
 
 [[bodies]]
 name = "bar"
@@ -152,7 +152,7 @@ fn contradictory_supports_are_named() {
 #[test]
 fn an_element_too_large_for_its_fracture_energy_is_refused() {
     let words = ["body bar", "characteristic length", "refine the mesh", "reduce_strength_to_fit"];
-    refused(&with("\"100 J/m^2\"", "\"1 J/m^2\""), "\"body\"", "bodies[0].group", &words);
+    refused(&with("\"250 J/m^2\"", "\"1 J/m^2\""), "\"body\"", "bodies[0].group", &words);
 }
 
 #[test]

@@ -320,12 +320,13 @@ pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec
         if motion::phase_sizes(solid, index).is_some() {
             continue;
         }
-        if let Some(warning) = excess_warning(case, part, size) {
+        let longest = (ratio > 0.25).then(|| {
+            format!("the longest element reaches {:.0} % of the length at which softening snaps back", 100.0 * ratio)
+        });
+        if let Some(warning) = excess_warning(case, part, size, longest.as_deref()) {
             warnings.push(warning);
-        } else if ratio > 0.25 {
-            let percent = 100.0 * ratio;
-            let found =
-                format!(": the longest element reaches {percent:.0} % of the length at which softening snaps back");
+        } else if let Some(longest) = longest {
+            let found = format!(": {longest}");
             warnings.push(Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(
                 "elements below a quarter of that length resolve the softening; refine where cracks are expected",
             ));
@@ -336,8 +337,8 @@ pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec
 
 /// Warns where elements are so large beside the process zone that cracks run late.
 ///
-/// - `size`: of the elements where cracks are expected [m]
-fn excess_warning(case: &Case, part: &Part, size: f64) -> Option<Diagnostic> {
+/// - `size`: of the elements where cracks are expected [m]; `longest`: what else is to be told of them
+fn excess_warning(case: &Case, part: &Part, size: f64, longest: Option<&str>) -> Option<Diagnostic> {
     let material = &case.materials[part.body.material];
     let damage = material.damage.as_ref().filter(|_| part.body.damage)?;
     let zone = damage.value.law.process_zone(material.young_modulus);
@@ -345,12 +346,14 @@ fn excess_warning(case: &Case, part: &Part, size: f64) -> Option<Diagnostic> {
     (excess >= LARGE_EXCESS).then(|| {
         let found = format!(
             ": elements of {} where cracks are expected are {:.2} of the process zone E Gf/ft^2 of {}: loads at which cracks run from notches come out \
-             some {:.0} % too high, {:.0} % at most",
+             some {:.0} % too high, {:.0} % at most{}{}",
             quantity(size, "m"),
             size / zone,
             quantity(zone, "m"),
             100.0 * excess,
-            180.0 * excess
+            180.0 * excess,
+            if longest.is_some() { "; " } else { "" },
+            longest.unwrap_or_default()
         );
         Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(format!(
             "2 % want elements of {} there, or an interface where the path of the crack is known (docs/accuracy.md)",
