@@ -100,23 +100,19 @@ fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
     (nodes, Body { damage: Some(zone), ..body })
 }
 
-/// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
-fn torn(bar: &Bar) -> [f64; 3] {
-    let (nodes, body) = body(bar);
-    let Bar { kind, cells: [along, across], law, .. } = bar;
+/// Tears a bar along x at rest; the scene afterwards, and the largest load [N].
+///
+/// - `end`: length of the bar [m]; `pull`: what its end moves at most [m]
+pub(crate) fn tear(nodes: Vec<Vec3>, body: Body, end: f64, pull: f64, words: &str) -> (Scene, f64) {
     let solid = Solid::new(nodes, vec![body]).unwrap();
-    let end = SIZE * f64::from(*along);
     let at = |keep: &dyn Fn(&Vec3) -> bool| -> Vec<u32> {
         (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
     };
-    let pull = 20.0 * (law.tensile_strength / YOUNG * end + FRACTURE_ENERGY / law.tensile_strength);
     let right = at(&|p| p.x > end - 1e-9);
-    let corner = at(&|p| p.norm() < 1e-9);
-    let side = at(&|p| p.x < 1e-9 && p.z < 1e-9);
     let supports = vec![
         Support::new("left", at(&|p| p.x < 1e-9), 0, Motion::Fixed),
-        Support::new("corner", corner, 1, Motion::Fixed),
-        Support::new("side", side, 2, Motion::Fixed),
+        Support::new("corner", at(&|p| p.norm() < 1e-9), 1, Motion::Fixed),
+        Support::new("side", at(&|p| p.x < 1e-9 && p.z < 1e-9), 2, Motion::Fixed),
         Support::new("right", right.clone(), 0, Motion::Displacement(Arc::new(move |t, _| pull * t))),
     ];
     let supports = Supports::new(supports, &solid.reference).unwrap();
@@ -133,9 +129,25 @@ fn torn(bar: &Bar) -> [f64; 3] {
         now = scene.supports().reaction(&places, &Vec3::x());
         peak = peak.max(now);
     }
-    assert!(now < 0.01 * peak, "{kind:?} {law:?}: torn");
+    assert!(now < 0.01 * peak, "{words}: torn");
     let ledger = scene.ledger();
-    assert!(ledger.residual_max_relative < 1e-3, "{kind:?} {law:?}: {ledger:?}");
+    assert!(ledger.residual_max_relative < 1e-3, "{words}: {ledger:?}");
+    (scene, peak)
+}
+
+/// Energy that tearing took [J].
+pub(crate) fn taken(scene: &Scene) -> f64 {
+    let ledger = scene.ledger();
+    ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]
+}
+
+/// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
+fn torn(bar: &Bar) -> [f64; 3] {
+    let (nodes, body) = body(bar);
+    let Bar { kind, cells: [along, across], law, .. } = bar;
+    let end = SIZE * f64::from(*along);
+    let pull = 20.0 * (law.tensile_strength / YOUNG * end + FRACTURE_ENERGY / law.tensile_strength);
+    let (scene, peak) = tear(nodes, body, end, pull, &format!("{kind:?} {law:?}"));
     let area = (SIZE * f64::from(*across)).powi(2);
     let far = bar.half + 4.0 * length(*kind);
     let solid = &scene.solid;
@@ -146,7 +158,7 @@ fn torn(bar: &Bar) -> [f64; 3] {
     let beside = elements.filter(|(e, _)| (place(e) - 0.5 * end).abs() > far);
     [
         peak / (area * WEAKER * law.tensile_strength),
-        (ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]) / (area * FRACTURE_ENERGY),
+        taken(&scene) / (area * FRACTURE_ENERGY),
         beside.map(|(_, damage)| damage).fold(0.0, f64::max),
     ]
 }

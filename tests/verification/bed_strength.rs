@@ -9,9 +9,10 @@ use fractum_fem::{
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
-use fractum_scene::statics::{Control, StaticSettings, StaticSolver};
 use fractum_scene::{ContactParameters, EnergyKind, Loads, Motion, Scene, Support, Supports};
-use fractum_tests::{settings, statics};
+use fractum_tests::settings;
+
+use super::bars::{taken, tear};
 
 /// Within its beds.
 const SHALE: Elastic = Elastic { density: 2500.0, young_modulus: 27e9, poisson_ratio: 0.15 };
@@ -96,40 +97,12 @@ fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
 /// Strength over Jaeger's, and energy of the crack over G A.
 fn torn(bar: &Bar) -> [f64; 2] {
     let (nodes, body) = body(bar);
-    let law = strengths();
-    let [strength, energy] = expected(bar.degrees, &law);
-    let solid = Solid::new(nodes, vec![body]).unwrap();
+    let [strength, energy] = expected(bar.degrees, &strengths());
     let end = bar.size * f64::from(bar.cells[0]);
-    let at = |keep: &dyn Fn(&Vec3) -> bool| -> Vec<u32> {
-        (0..solid.reference.len() as u32).filter(|&n| keep(&solid.reference[n as usize])).collect()
-    };
     let pull = 20.0 * (strength / 12e9 * end + energy / strength);
-    let right = at(&|p| p.x > end - 1e-9);
-    let supports = vec![
-        Support::new("left", at(&|p| p.x < 1e-9), 0, Motion::Fixed),
-        Support::new("corner", at(&|p| p.norm() < 1e-9), 1, Motion::Fixed),
-        Support::new("side", at(&|p| p.x < 1e-9 && p.z < 1e-9), 2, Motion::Fixed),
-        Support::new("right", right.clone(), 0, Motion::Displacement(Arc::new(move |t, _| pull * t))),
-    ];
-    let supports = Supports::new(supports, &solid.reference).unwrap();
-    let (loads, count) = (Loads::new(Vec::new(), solid.reference.len()), solid.body_count());
-    let debris = Debris::new(&solid, vec![ContactParameters::default(); count]);
-    let mut scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(1.0, f64::INFINITY));
-    let statics =
-        StaticSettings { control: Control::Path, tolerance: 1e-5, linear_tolerance: 1e-12, ..statics(0.02, 1.0) };
-    let mut solver = StaticSolver::new(&scene, statics).unwrap();
-    let places = scene.supports().places(&right);
-    let (mut peak, mut now) = (0.0f64, 0.0);
-    while !solver.is_finished(&scene) && now >= 0.01 * peak {
-        solver.step(&mut scene).unwrap();
-        now = scene.supports().reaction(&places, &Vec3::x());
-        peak = peak.max(now);
-    }
-    let ledger = scene.ledger();
+    let (scene, peak) = tear(nodes, body, end, pull, &format!("{bar:?}"));
     let area = (bar.size * f64::from(bar.cells[1])).powi(2);
-    assert!(now < 0.01 * peak, "{bar:?}: torn");
-    assert!(ledger.residual_max_relative < 1e-3, "{bar:?}: {ledger:?}");
-    [peak / (area * WEAKER * strength), (ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]) / (area * energy)]
+    [peak / (area * WEAKER * strength), taken(&scene) / (area * energy)]
 }
 
 /// Bars of all angles, and such as lie beside one of them: strength within 2 %, energy as docs/limits.md tells it.
