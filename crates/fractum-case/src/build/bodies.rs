@@ -261,7 +261,7 @@ pub(super) fn solid_bodies<'a>(
             if let Some(beds) = material.bedding.as_ref().filter(|_| body.formulation == Formulation::Standard) {
                 context.error(
                     &beds.place,
-                    " beside damage with the standard formulation",
+                    "beside damage with the standard formulation",
                     "the smoothed formulation, whose edges alone know of beds; remove one of the three",
                 );
             }
