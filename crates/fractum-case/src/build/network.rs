@@ -198,7 +198,7 @@ fn add(all: &mut AllJoints, own: &Joints, mesh: &Mesh) -> Result<(), Diagnostics
     if let Some(condition) = own.condition.as_ref().filter(|_| !allowed.contains(&true)) {
         return Err(one(
             &condition.place,
-            " holds in no element of these groups".to_owned(),
+            "holds in no element of these groups".to_owned(),
             "a place in the bodies",
             "",
         ));
@@ -233,7 +233,7 @@ fn add(all: &mut AllJoints, own: &Joints, mesh: &Mesh) -> Result<(), Diagnostics
             if planes * of_each > 1e6 {
                 return Err(one(
                     &own.place,
-                    " has more than a million joints".to_owned(),
+                    "has more than a million joints".to_owned(),
                     "",
                     "a larger spacing or length, with its unit",
                 ));
