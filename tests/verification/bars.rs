@@ -70,20 +70,31 @@ impl Bar {
     }
 }
 
-fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
-    let jitter = Some(Jitter { fraction: 0.15, seed: bar.seed });
-    let [along, across] = bar.cells;
-    let extent = [along, across, across].map(|cells| SIZE * f64::from(cells));
-    let (nodes, elements) = match bar.kind {
+/// Extent [m], nodes and elements of a bar of cells whose nodes are moved at random.
+///
+/// - `cells`: along and across it; `size`: of one [m]
+pub(super) fn bricks(
+    kind: ElementKind,
+    [along, across]: [u32; 2],
+    size: f64,
+    seed: u64,
+) -> ([f64; 3], Vec<Vec3>, Vec<[u32; 4]>) {
+    let jitter = Some(Jitter { fraction: 0.15, seed });
+    let extent = [along, across, across].map(|cells| size * f64::from(cells));
+    match kind {
         ElementKind::T3 => {
             let mesh = structured_rectangle([along, across], [extent[0], extent[1]], jitter);
-            (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
+            (extent, mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
         }
         ElementKind::T4 => {
             let mesh = structured_box([along, across, across], Vec3::from(extent), jitter);
-            (mesh.nodes, mesh.tetrahedra)
+            (extent, mesh.nodes, mesh.tetrahedra)
         }
-    };
+    }
+}
+
+fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
+    let (extent, nodes, elements) = bricks(bar.kind, bar.cells, SIZE, bar.seed);
     let elastic = Elastic { poisson_ratio: bar.poisson_ratio, ..CONCRETE };
     let body = Body::new("bar", bar.kind, elements, elastic);
     let body = Body { formulation: bar.formulation, plane: bar.plane, thickness: extent[2], ..body };

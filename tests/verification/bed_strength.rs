@@ -7,12 +7,11 @@ use fractum_fem::{
     Kinematics, Plane, Region, Regularisation, Solid, SolidError,
 };
 use fractum_math::Vec3;
-use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
 use fractum_scene::coupling::Debris;
 use fractum_scene::{ContactParameters, EnergyKind, Loads, Motion, Scene, Support, Supports};
 use fractum_tests::settings;
 
-use super::bars::{taken, tear};
+use super::bars::{bricks, taken, tear};
 
 /// Within its beds.
 const SHALE: Elastic = Elastic { density: 2500.0, young_modulus: 27e9, poisson_ratio: 0.15 };
@@ -59,19 +58,7 @@ fn expected(degrees: f64, law: &DamageLaw) -> [f64; 2] {
 }
 
 fn body(bar: &Bar) -> (Vec<Vec3>, Body) {
-    let jitter = Some(Jitter { fraction: 0.15, seed: bar.seed });
-    let [along, across] = bar.cells;
-    let extent = [along, across, across].map(|cells| bar.size * f64::from(cells));
-    let (nodes, elements) = match bar.kind {
-        ElementKind::T3 => {
-            let mesh = structured_rectangle([along, across], [extent[0], extent[1]], jitter);
-            (mesh.nodes, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect())
-        }
-        ElementKind::T4 => {
-            let mesh = structured_box([along, across, across], Vec3::from(extent), jitter);
-            (mesh.nodes, mesh.tetrahedra)
-        }
-    };
+    let (extent, nodes, elements) = bricks(bar.kind, bar.cells, bar.size, bar.seed);
     let (sine, cosine) = bar.degrees.to_radians().sin_cos();
     let normal = match bar.kind {
         ElementKind::T3 => Vec3::new(cosine, sine, 0.0),

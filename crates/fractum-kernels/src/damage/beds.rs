@@ -132,7 +132,7 @@ impl Beds {
             let longer = self.longer(modulus, if pull > 0.0 { pull.min(most) } else { most }, parts);
             return Seen {
                 lateral: added * (kappa / q),
-                band: Band { pull, longer, direction },
+                band: Band { pull, longer, direction, held: self.held(direction, modulus) },
                 ..Seen { stress: q, ..Seen::NOTHING }
             };
         }
@@ -149,13 +149,11 @@ impl Beds {
         if stress <= strength {
             return Seen { stress, share: share(stress), lateral: at_onset, ..Seen::NOTHING };
         }
-        // As in bodies without beds, with Poisson's ratio of the pull.
-        let m = if ratio > 0.0 {
-            obliquity(
-                if self.is_plane { ratio } else { ratio / (1.0 - ratio) },
-                self.is_plane,
-                more / ratio / (first - strength / k),
-            )
+        // As in bodies without beds, with Poisson's ratio of the pull. A band that opens straight owes to its neighbours what it owed at the onset: m is 1.
+        let m = if ratio > 0.0 && band.held > 0.0 {
+            let askew = if self.is_plane { ratio } else { ratio / (1.0 - ratio) };
+            let straight = if self.is_plane { askew } else { 2.0 * askew };
+            obliquity(askew, self.is_plane, straight * more / (band.held * (first - strength / k)))
         } else {
             1.0
         };
@@ -178,6 +176,18 @@ impl Beds {
         let along = contract(dyad, strain);
         let all = strain[0] + strain[1] + if self.is_plane { 0.0 } else { strain[2] };
         (1.0 / along, (along - all) / along * if self.is_plane { 1.0 } else { 0.5 })
+    }
+
+    /// Part of a growing pull that a band across it owes to its neighbours, 1 - E_e e·Q⁻¹ e with Christoffel's tensor Q: it opens by Q⁻¹ of its traction.
+    fn held(&self, direction: Vec3, modulus: f64) -> f64 {
+        let mut waves = self.stiffness.of_waves(direction).to_matrix();
+        if self.is_plane {
+            // Nothing moves along z.
+            waves.fill_row(2, 0.0);
+            waves.fill_column(2, 0.0);
+            waves[(2, 2)] = 1.0;
+        }
+        waves.try_inverse().map_or(0.0, |inverse| 1.0 - modulus * direction.dot(&(inverse * direction)))
     }
 
     /// Strain with engineering shears of a stress.

@@ -51,8 +51,8 @@ impl EdgeDamage {
     /// What an edge of bedded rock has kept of the onset of its damage.
     #[inline]
     pub fn band(&self) -> Band {
-        let [pull, longer, x, y, z, _] = self.strain.0;
-        Band { pull, longer, direction: Vec3::new(x, y, z) }
+        let [pull, longer, x, y, z, held] = self.strain.0;
+        Band { pull, longer, direction: Vec3::new(x, y, z), held }
     }
 
     /// What the cheap test compares with: never passed by a damaged edge.
@@ -239,9 +239,9 @@ impl Softens {
         let mut length = length;
         if self.beds.is_some() {
             if edge.lateral == f64::INFINITY {
-                let Band { pull, longer, direction } = seen.band;
+                let Band { pull, longer, direction, held } = seen.band;
                 let [x, y, z] = direction.into();
-                edge.strain = Sym3([pull, longer, x, y, z, 0.0]);
+                edge.strain = Sym3([pull, longer, x, y, z, held]);
             }
             length = self.length_of(edge.band(), strength, length);
         }

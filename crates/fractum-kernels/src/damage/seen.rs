@@ -11,11 +11,13 @@ pub struct Band {
     pub longer: f64,
     /// Direction of the pull that began it.
     pub direction: Vec3,
+    /// Part of a growing pull that a band across that direction owes to its neighbours, which hold it sideways.
+    pub held: f64,
 }
 
 impl Band {
     /// That of an edge without beds.
-    pub const PLAIN: Band = Band { pull: 0.0, longer: 1.0, direction: Vec3::new(0.0, 0.0, 0.0) };
+    pub const PLAIN: Band = Band { pull: 0.0, longer: 1.0, direction: Vec3::new(0.0, 0.0, 0.0), held: 0.0 };
 }
 
 /// What an edge sees in a step.
