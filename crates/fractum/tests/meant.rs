@@ -21,7 +21,7 @@ fn cases() -> BTreeMap<&'static str, String> {
     let bar = BAR.replace("PLANE", "xyz");
     assert!(bar.contains(support) && bar.contains(end));
     let replaced = |new: &str, at_end: &str| bar.replace(support, new).replace(end, at_end);
-    let damage = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"250 J/m^2\"\n[[bodies]]";
+    let damage = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
     let pull = "[[probes]]\nname = \"pull\"\nreaction = { group = \"x+\", along = \"x\" }\n";
     let long = "[\"0.1 ms\", \"1 mm/s\"]";
     let broken = bar

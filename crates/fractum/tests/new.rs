@@ -14,12 +14,8 @@ fn every_template_is_listed_and_passes_check_without_a_doubt() {
         assert_eq!(made.code, Some(0), "{name}: {}", made.stderr);
         if name != "bonded-ucs" {
             assert!(place.path(&format!("{name}/part.geo")).is_file());
-            let checked = place.fractum(&["check", &format!("{name}/case.toml")]);
-            let said = checked.stdout + &checked.stderr;
-            let doubts: Vec<&str> = said.lines().filter(|line| line.contains("warning: ")).collect();
-            // Of elements that are large, so that they run in seconds; their texts say so.
-            let is_coarse = |line: &&str| ["bracket", "blast"].contains(&name) && line.ends_with("[coarse-mesh]");
-            assert!(checked.code == Some(0) && doubts.iter().all(is_coarse), "{name}: {doubts:?}");
+            let checked = place.fractum(&["check", "--strict", &format!("{name}/case.toml")]);
+            assert_eq!((checked.code, checked.stderr.as_str()), (Some(0), ""), "{name}");
         }
     }
     let again = place.fractum(&["new", "plate"]);

@@ -14,6 +14,7 @@ use fractum_mesh::topology;
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 
+use super::notches::Notches;
 use super::{Context, use_in_words};
 use crate::model::{BodyKind, Case, Damage, GroupUse, SolidBody};
 use crate::{Diagnostic, Place};
@@ -300,8 +301,11 @@ fn damage_zone(
 }
 
 /// Warns where elements are large for their fracture energy, or strength had to be lowered.
-pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec<Diagnostic> {
+///
+/// - `boundary`: facets of the surface of all solids
+pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part], boundary: &[[u32; 3]]) -> Vec<Diagnostic> {
     let mut warnings = Vec::new();
+    let notches = Notches::of(solid, boundary);
     for (index, part) in parts.iter().enumerate() {
         let LengthReport { reduced_edges: reduced, largest_ratio: ratio, size } = solid.length_report(index);
         if let Some([length, size]) = motion::phase_sizes(solid, index).filter(|[length, size]| *length < 1.5 * size) {
@@ -323,7 +327,7 @@ pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec
         let longest = (ratio > 0.25).then(|| {
             format!("the longest element reaches {:.0} % of the length at which softening snaps back", 100.0 * ratio)
         });
-        if let Some(warning) = excess_warning(case, part, size, longest.as_deref()) {
+        if let Some(warning) = excess_warning(case, part, solid.body(index), &notches, size, longest.as_deref()) {
             warnings.push(warning);
         } else if let Some(longest) = longest {
             let found = format!(": {longest}");
@@ -335,31 +339,46 @@ pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part]) -> Vec
     warnings
 }
 
-/// Warns where elements are so large beside the process zone that cracks run late.
+/// Warns where elements are so large beside the process zone, or beside the body, that cracks run late from its notches.
 ///
 /// - `size`: of the elements where cracks are expected [m]; `longest`: what else is to be told of them
-fn excess_warning(case: &Case, part: &Part, size: f64, longest: Option<&str>) -> Option<Diagnostic> {
-    let material = &case.materials[part.body.material];
-    let damage = material.damage.as_ref().filter(|_| part.body.damage)?;
-    let zone = damage.value.law.process_zone(material.young_modulus);
-    let excess = EXCESS_OF_PEAK * size / zone;
-    (excess >= LARGE_EXCESS).then(|| {
-        let found = format!(
-            ": elements of {} where cracks are expected are {:.2} of the process zone E Gf/ft^2 of {}: loads at which cracks run from notches come out \
-             some {:.0} % too high, {:.0} % at most{}{}",
-            quantity(size, "m"),
-            size / zone,
-            quantity(zone, "m"),
-            100.0 * excess,
-            180.0 * excess,
-            if longest.is_some() { "; " } else { "" },
-            longest.unwrap_or_default()
-        );
-        Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(format!(
-            "2 % want elements of {} there, or an interface where the path of the crack is known (docs/accuracy.md)",
-            quantity(0.02 * zone / EXCESS_OF_PEAK, "m")
-        ))
-    })
+fn excess_warning(
+    case: &Case,
+    part: &Part,
+    body: &fem::Body,
+    notches: &Notches,
+    size: f64,
+    longest: Option<&str>,
+) -> Option<Diagnostic> {
+    let zone = case.materials[part.body.material].process_zone().filter(|_| part.body.damage)?;
+    let extent = body.smallest_extent(notches.nodes);
+    let (whole, name) = if zone <= extent {
+        (zone, "the process zone E Gf/ft^2 of")
+    } else {
+        (extent, "the smallest extent of the body,")
+    };
+    let [excess, most] = EXCESS_OF_PEAK.map(|factor| factor * size / whole);
+    if excess < LARGE_EXCESS || !(notches.has(body) || case.interfaces.iter().any(|own| !own.law.is_bonded())) {
+        return None;
+    }
+    let off = match body.formulation {
+        Formulation::Smoothed => {
+            format!("come out some {:.0} % too high, {:.0} % at most", 100.0 * excess, 100.0 * most)
+        }
+        Formulation::Standard => format!("are off by {:.0} % at most", 100.0 * most),
+    };
+    let found = format!(
+        ": elements of {} where cracks are expected are {:.2} of {name} {}: loads at which cracks run from notches {off}{}{}",
+        quantity(size, "m"),
+        size / whole,
+        quantity(whole, "m"),
+        if longest.is_some() { "; " } else { "" },
+        longest.unwrap_or_default()
+    );
+    Some(Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy(format!(
+        "2 % want elements of {} there, or an interface where the path of the crack is known (docs/accuracy.md)",
+        quantity(0.02 * whole / EXCESS_OF_PEAK[0], "m")
+    )))
 }
 
 /// Warns where a body would be stronger by its few flaws than its elements allow.

@@ -162,7 +162,7 @@ fn doubt_of_origin(case: &Case, mesh: &Mesh, bodies: &[(&SolidBody, f64)]) -> Op
 fn doubt_of_zone(case: &Case, body: &SolidBody, size: f64) -> Option<Diagnostic> {
     let material = &case.materials[body.material];
     let damage = material.damage.as_ref()?;
-    let zone = damage.value.law.process_zone(material.young_modulus);
+    let zone = material.process_zone()?;
     if size == 0.0 || zone <= ZONES * size || zone > LONGEST_ZONE {
         return None;
     }

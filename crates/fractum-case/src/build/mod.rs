@@ -19,6 +19,7 @@ mod load_doubts;
 mod meeting_doubts;
 mod model_doubts;
 mod network;
+mod notches;
 mod ppv;
 mod precheck;
 mod probes;
@@ -192,7 +193,7 @@ impl<'a> Context<'a> {
         let inner = interfaces::inner_facets(self, &numbering);
         boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
         let mut solid = self.solid(&parts, &numbering, &boundary)?;
-        let mut warnings = bodies::length_warnings(self.case, &solid, &parts);
+        let mut warnings = bodies::length_warnings(self.case, &solid, &parts, &boundary);
         warnings.extend(bodies::weibull_warnings(self, &solid, &parts));
         bodies::set_initial_velocity(self, &mut solid, &parts, &numbering);
         let mut boundary_of_parts = contacts::facets_of_parts(self, &parts, &numbering);

@@ -36,6 +36,16 @@ pub struct Material {
     pub contact_modulus: Option<f64>,
 }
 
+impl Material {
+    /// Length of its process zone, of its beds where theirs is shorter [m]; none where it does not crack.
+    pub fn process_zone(&self) -> Option<f64> {
+        let of_rock = self.damage.as_ref()?.value.law.process_zone(self.young_modulus);
+        let beds = self.bedding.as_ref().map(|beds| &beds.value);
+        let of_beds = beds.and_then(|beds| Some(beds.strength?.process_zone(beds.law.young_modulus)));
+        Some(of_beds.map_or(of_rock, |of_beds| of_beds.min(of_rock)))
+    }
+}
+
 /// Bedding of a material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beds {

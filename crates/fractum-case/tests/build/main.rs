@@ -9,6 +9,7 @@ mod doubts;
 mod gas;
 mod heat;
 mod network;
+mod notches;
 mod selection;
 mod sides;
 mod weibull;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use fractum_kernels::damage::{Beds, Restraint, Softens};
 use fractum_kernels::material::{Bedding, CriterionKind, DamageLaw, Elastic, Hooke, Plane};
+use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use self::rate::RateCurves;
@@ -197,6 +198,26 @@ impl Body {
             (zone.rate.is_some(), ["strength by the rate of strain", "no rate"]),
         ];
         against.into_iter().find_map(|(has, words)| has.then_some(words))
+    }
+
+    /// Smallest extent along its principal axes, of a plane body in its plane [m].
+    ///
+    /// - `nodes`: places of all nodes [m]
+    pub fn smallest_extent(&self, nodes: &[Vec3]) -> f64 {
+        let corners = || self.elements.iter().flat_map(|e| &e[..self.shape.node_count()]).map(|&n| nodes[n as usize]);
+        let count = corners().count() as f64;
+        let centre = corners().sum::<Vec3>() / count;
+        let spread: Mat3 = corners().map(|p| (p - centre) * (p - centre).transpose()).sum();
+        let (_, axes) = Sym3::symmetric_part(&spread).eigen();
+        let extent = |axis: usize| {
+            let along = corners().map(|p| p.dot(&axes.column(axis)));
+            let (low, high) =
+                along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+            high - low
+        };
+        let mut extents = [0, 1, 2].map(extent);
+        extents.sort_by(f64::total_cmp);
+        if self.shape == ElementKind::T3 { extents[1] } else { extents[0] }
     }
 
     /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.

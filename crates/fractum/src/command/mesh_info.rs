@@ -12,7 +12,7 @@ use fractum_output::number::{grouped, quantity, significant};
 use serde_json::{Value, json};
 
 /// Part of the process zone that edges must not exceed for loads of cracks within 5 %.
-const ACCURATE: f64 = 0.05 / EXCESS_OF_PEAK;
+const ACCURATE: f64 = 0.05 / EXCESS_OF_PEAK[0];
 
 /// What a case asks of its mesh.
 pub(super) struct Demand {
@@ -35,9 +35,9 @@ impl Demand {
     pub(super) fn of(case: &Case) -> Self {
         let zone = |material: &fractum_case::model::Material| {
             let law = &material.damage.as_ref()?.value.law;
-            let (modulus, material) = (material.young_modulus, material.name.value.clone());
+            let (modulus, name) = (material.young_modulus, material.name.value.clone());
             let most = law.softening.largest_length(modulus, law.tensile_strength, law.fracture_energy);
-            Some(Zone { material, length: law.process_zone(modulus), most })
+            Some(Zone { material: name, length: material.process_zone()?, most })
         };
         Demand {
             unit: case.mesh.as_ref().map_or(1.0, |mesh| mesh.unit),

@@ -9,7 +9,6 @@ use fractum_fem::{
     DamageLaw, EXCESS_OF_PEAK, ElementKind, Formulation, Kinematics, LengthReport, Plane, motion, neighbours,
 };
 use fractum_math::elementary::cbrt;
-use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_output::number::quantity;
 use fractum_prepare::{BondedReport, FoundStrengths, InterfaceReport, Joints, Origin};
 use fractum_scene::Scene;
@@ -231,21 +230,27 @@ impl Plan {
         }
         if let Some(damage) = material.damage.as_ref().filter(|_| solid.damage) {
             let d = &damage.value;
-            let zone = d.law.process_zone(material.young_modulus);
+            let zone = material.process_zone().unwrap_or(f64::INFINITY);
             let LengthReport { largest_ratio, size, .. } = scene.solid.length_report(index);
             let beside = if d.regularisation.is_some() {
                 format!("length b of the phase field at {:.1} % of the longest possible", 100.0 * largest_ratio)
             } else {
+                let extent = body.smallest_extent(&scene.solid.reference);
+                let [excess, most] = EXCESS_OF_PEAK.map(|factor| 100.0 * factor * size / zone.min(extent));
+                let late = match body.formulation {
+                    Formulation::Smoothed => format!("cracks from notches run some {excess:.1} % late"),
+                    Formulation::Standard => format!("loads of cracks from notches are off by {most:.1} % at most"),
+                };
                 format!(
-                    "elements where cracks are expected {:.3} of it, which makes cracks run some {:.1} % late; longest element at {:.1} % of the snap-back length",
+                    "elements where cracks are expected {:.3} of it and {:.3} of the smallest extent of the body: {late}; longest element at {:.1} % of the snap-back length",
                     size / zone,
-                    100.0 * EXCESS_OF_PEAK * size / zone,
+                    size / extent,
                     100.0 * largest_ratio
                 )
             };
             self.add("", format!("process zone E Gf/ft\u{b2} = {}; {beside}", quantity(zone, "m")));
             if let Some([length, size]) = motion::phase_sizes(&scene.solid, index) {
-                let depth = smallest_extent(body, &scene.solid.reference);
+                let depth = body.smallest_extent(&scene.solid.reference);
                 self.add("", format!(
                     "phase field of length b = {}, {:.1} of the elements where cracks are expected ({}); b is {:.1} % of the smallest extent of the body, {}: in bending across it a peak without notch is about that much too high (0.9 to 1.2 times)",
                     quantity(length, "m"),
@@ -265,23 +270,6 @@ impl Plan {
             }
         }
     }
-}
-
-/// Smallest extent of a body, of a plane one in its plane, along its principal axes [m].
-fn smallest_extent(body: &fractum_fem::Body, nodes: &[Vec3]) -> f64 {
-    let corners = || body.elements.iter().flat_map(|e| &e[..body.shape.node_count()]).map(|&n| nodes[n as usize]);
-    let count = corners().count() as f64;
-    let centre = corners().sum::<Vec3>() / count;
-    let spread: Mat3 = corners().map(|p| (p - centre) * (p - centre).transpose()).sum();
-    let (_, axes) = Sym3::symmetric_part(&spread).eigen();
-    let extent = |axis: usize| {
-        let along = corners().map(|p| p.dot(&axes.column(axis)));
-        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        high - low
-    };
-    let mut extents = [0, 1, 2].map(extent);
-    extents.sort_by(f64::total_cmp);
-    if body.shape == ElementKind::T3 { extents[1] } else { extents[0] }
 }
 
 fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The meshes of the templates, as `part.geo` describes them for Gmsh.
 
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_4, PI};
 
 use fractum_math::Vec3;
 use fractum_math::elementary::{asin, sin_cos};
@@ -67,8 +67,33 @@ pub(super) fn blast() -> Mesh {
 }
 
 pub(super) fn bracket() -> Mesh {
-    let cells = mirrored_cells([20, 20, 7], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
+    let mut cells = mirrored_cells([20, 20, 7], Vec3::new(60.0, 60.0, 20.0), |[i, j, _]| i < 4 || j < 4);
+    cells.nodes.iter_mut().for_each(|node| *node = round_corner(*node));
     with_groups(&scrambled(&cells, 0.3, 1), "bracket", &[("y+", "top"), ("x+", "end")])
+}
+
+/// Where a point of an angle whose legs are 12 mm thick goes as its inner corner becomes an arc of 6 mm.
+fn round_corner(place: Vec3) -> Vec3 {
+    let (leg, radius) = (12.0, 6.0);
+    // Of points on the inner side of a leg, by their distance from the corner: along the leg and across it.
+    let moved = |distance: f64| {
+        let angle = FRAC_PI_4 * (1.0 - distance / radius).clamp(0.0, 1.0);
+        let (sine, cosine) = sin_cos(angle);
+        let [along, across] = [radius * (1.0 - sine), radius * (1.0 - cosine)];
+        if distance < radius { [along - distance, across] } else { [0.0; 2] }
+    };
+    let [x, y] = [place.x / leg, place.y / leg];
+    let by = if x <= 1.0 && y <= 1.0 {
+        let [corner, _] = moved(0.0);
+        [corner * x * y; 2]
+    } else if x <= 1.0 {
+        let [along, across] = moved(place.y - leg);
+        [across * x, along * x]
+    } else {
+        let [along, across] = moved(place.x - leg);
+        [along * y, across * y]
+    };
+    place + Vec3::new(by[0], by[1], 0.0)
 }
 
 pub(super) fn impact() -> Mesh {
