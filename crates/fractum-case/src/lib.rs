@@ -67,7 +67,7 @@ pub use keys::{explain, keys};
 pub use model::Case;
 pub use nearest::nearest;
 pub use place::{Place, Spanned};
-pub use quantity::parse_quantity;
+pub use quantity::{parse_condition, parse_quantity};
 pub use read::{parse_case, read_case, refuse_endless};
 pub use schema::schema;
 pub use time_function::{Field, TimeFunction};

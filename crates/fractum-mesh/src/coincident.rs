@@ -53,6 +53,16 @@ pub fn coincident_nodes<N: AsRef<[u32]>>(mesh: &Mesh, bodies: &[N]) -> Vec<Coinc
     pairs
 }
 
+/// The least of the nodes that lie in the place of each node, whatever bodies they belong to.
+pub(crate) fn same_places(mesh: &Mesh) -> Vec<u32> {
+    let each: Vec<[u32; 1]> = (0..mesh.nodes.len() as u32).map(|node| [node]).collect();
+    let mut place: Vec<u32> = (0..mesh.nodes.len() as u32).collect();
+    for Coincident { nodes: [a, b], .. } in coincident_nodes(mesh, &each) {
+        unite(&mut place, a, b);
+    }
+    (0..mesh.nodes.len() as u32).map(|node| root(&place, node)).collect()
+}
+
 /// How near a node of another body is in the place of each node.
 fn tolerances(mesh: &Mesh) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; mesh.nodes.len()];

@@ -5,6 +5,7 @@
 //! - [`joined`]: one mesh of the files into which Gmsh writes its partitions
 //! - [`joined_bodies`]: bodies of which each has nodes of its own, joined where their faces conform
 //! - [`Mesh::cut`]: nodes doubled along faces inside of a mesh
+//! - [`refined`]: smaller elements where they are asked for; [`halved`] everywhere; [`scrambled`]: another mesh of the same size
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
@@ -42,6 +43,7 @@ mod joints;
 mod mesh;
 mod neighbour;
 pub mod quality;
+mod refine;
 pub mod renumber;
 mod tagged;
 pub mod topology;
@@ -60,6 +62,7 @@ pub use joints::{
 };
 pub use mesh::{CutFace, Group, Mesh, WholeMesh};
 pub use neighbour::{halved, scrambled};
+pub use refine::{RefineError, RefineOptions, Refined, estimated_elements, longest_edge, refined};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;
 

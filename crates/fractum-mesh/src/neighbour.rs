@@ -3,7 +3,7 @@
 use fractum_math::Vec3;
 
 use crate::quality::{signed_volume, tetrahedron, triangle};
-use crate::topology::{boundary_of_tetrahedra, boundary_of_triangles};
+use crate::refine::free::{around_nodes, free_nodes};
 use crate::{Group, Mesh, generate::unit_interval};
 
 /// The mesh with every edge halved: a triangle becomes 4, a quadrilateral 4, a tetrahedron 8 (the inner octahedron is cut along its
@@ -105,7 +105,7 @@ impl Middles {
 }
 
 /// Smallest radius ratio (1 for an equilateral element) that a moved node may leave to an element, unless it was smaller before.
-const WORST_SHAPE: f64 = 0.3;
+pub(crate) const WORST_SHAPE: f64 = 0.3;
 
 /// The mesh with its inner nodes moved at random by up to `share` of the shortest edge at each. Nodes of sides, of lines and surfaces
 /// of the mesh, and between groups stay; so does a node whose move would leave an element misshapen.
@@ -115,8 +115,8 @@ const WORST_SHAPE: f64 = 0.3;
 pub fn scrambled(mesh: &Mesh, share: f64, seed: u64) -> Mesh {
     let mut moved = mesh.clone();
     let plane = mesh.tetrahedra.is_empty();
-    let free = free_nodes(mesh);
-    let of_node = elements_of_nodes(mesh);
+    let of_node = around_nodes(mesh);
+    let free = free_nodes(mesh, &of_node);
     let shape = |nodes: &[Vec3], element: u32| {
         if plane {
             let corners = mesh.triangles[element as usize].map(|n| nodes[n as usize]);
@@ -128,7 +128,7 @@ pub fn scrambled(mesh: &Mesh, share: f64, seed: u64) -> Mesh {
         }
     };
     for node in (0..mesh.nodes.len()).filter(|&node| free[node]) {
-        let around = &of_node[node];
+        let around = of_node.row(node);
         let before = moved.nodes[node];
         let worst = |nodes: &[Vec3]| around.iter().map(|&element| shape(nodes, element)).fold(f64::INFINITY, f64::min);
         let allowed = worst(&moved.nodes).min(WORST_SHAPE);
@@ -148,50 +148,11 @@ pub fn scrambled(mesh: &Mesh, share: f64, seed: u64) -> Mesh {
     moved
 }
 
-/// Which nodes lie inside, between elements of the same groups alone.
-fn free_nodes(mesh: &Mesh) -> Vec<bool> {
-    let mut free = vec![true; mesh.nodes.len()];
-    let mut hold = |nodes: &[u32]| nodes.iter().for_each(|&node| free[node as usize] = false);
-    mesh.points.iter().for_each(|nodes| hold(nodes));
-    mesh.lines.iter().for_each(|nodes| hold(nodes));
-    mesh.quads.iter().for_each(|nodes| hold(nodes));
-    let plane = mesh.tetrahedra.is_empty();
-    if plane {
-        boundary_of_triangles(&mesh.triangles).iter().for_each(|edge| hold(&edge.nodes));
-    } else {
-        mesh.triangles.iter().for_each(|nodes| hold(nodes));
-        boundary_of_tetrahedra(&mesh.tetrahedra).iter().for_each(|facet| hold(&facet.nodes));
-    }
-    let count = if plane { mesh.triangles.len() } else { mesh.tetrahedra.len() };
-    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); count];
-    for (index, group) in mesh.groups.iter().enumerate() {
-        let members = if plane { &group.triangles } else { &group.tetrahedra };
-        members.iter().for_each(|&element| groups[element as usize].push(index));
-    }
-    for (node, elements) in elements_of_nodes(mesh).iter().enumerate() {
-        let alike = elements.windows(2).all(|pair| groups[pair[0] as usize] == groups[pair[1] as usize]);
-        free[node] &= alike && !elements.is_empty();
-    }
-    free
-}
-
-/// The tetrahedra around every node; in the plane the triangles.
-fn elements_of_nodes(mesh: &Mesh) -> Vec<Vec<u32>> {
-    let mut found = vec![Vec::new(); mesh.nodes.len()];
-    if mesh.tetrahedra.is_empty() {
-        let all = mesh.triangles.iter().enumerate().flat_map(|(index, nodes)| nodes.map(|node| (index, node)));
-        all.for_each(|(index, node)| found[node as usize].push(index as u32));
-    } else {
-        let all = mesh.tetrahedra.iter().enumerate().flat_map(|(index, nodes)| nodes.map(|node| (index, node)));
-        all.for_each(|(index, node)| found[node as usize].push(index as u32));
-    }
-    found
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::generate::{structured_box, structured_rectangle};
+    use crate::topology::boundary_of_tetrahedra;
 
     fn volume(mesh: &Mesh) -> f64 {
         mesh.tetrahedra.iter().map(|t| signed_volume(t.map(|n| mesh.nodes[n as usize]))).sum()

@@ -7,7 +7,7 @@ use fractum_pack::{Arrangement, Convention};
 
 use super::{key, names};
 use crate::key_kind::{KeyDoc, KeyKind as K};
-use crate::model::BondLawKind;
+use crate::model::{BondLawKind, Rows};
 use crate::unit::Dimension as D;
 
 #[rustfmt::skip] // a table reads best with one row per line
@@ -22,9 +22,14 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("mesh.unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the mesh's coordinates"),
     key("mesh.join", K::AllOrNames, "false", "Solids share nodes at the same positions: all solids, or the named ones. Nodes are joined on faces that conform, if they are nearer than a thousandth of the shortest edge"),
     key("mesh.halvings", K::Integer, "0", "How often every edge is halved after reading, 0 to 6: each time a triangle becomes 4, a tetrahedron 8; curved sides stay those of the file"),
-    key("mesh.scramble", K::Table, "", "Moves inner nodes at random, which gives another mesh of the same size. It comes before halvings"),
+    key("mesh.scramble", K::Table, "", "Moves inner nodes at random, which gives another mesh of the same size. It comes before refine and halvings"),
     key("mesh.scramble.share", K::Quantity(D::NONE), "required", "Largest move of a node over its shortest edge, above 0 and at most 0.5; nodes on sides, between groups and at poor elements stay"),
     key("mesh.scramble.seed", K::Integer, "1", "Seed of the random numbers, ≥ 0"),
+    key("mesh.refine[]", K::Tables, "", "A zone of smaller elements, made by cutting the longest edges of triangles and tetrahedra in two; of several zones the smallest size holds. It comes before halvings, joints and grains"),
+    key("mesh.refine[].where", K::Condition, "everywhere", "Condition on x, y, z: where elements become smaller. Elements around the zone are cut as far as they must be to fit"),
+    key("mesh.refine[].size", K::Quantity(D::LENGTH), "required", "Longest edge in the zone, > 0; most edges become shorter, down to half of it"),
+    key("mesh.refine[].rows", K::Choice(names::<Rows>), "\"break\"", "break: inner nodes of the zone then move at random and are smoothed, so that cracks find no rows of elements to follow. keep: no node moves"),
+    key("mesh.refine[].seed", K::Integer, "1", "Seed of these moves, ≥ 0"),
     key("materials", K::NamedTables, "", "Materials by name"),
     key("materials.NAME", K::Table, "", "A material"),
     key("materials.NAME.density", K::Quantity(D::DENSITY), "required", "Mass density, > 0"),

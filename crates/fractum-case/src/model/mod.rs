@@ -16,6 +16,7 @@ mod output;
 mod plot;
 mod ppv;
 mod probe;
+mod refine;
 mod rigid;
 mod scatter;
 mod solver;
@@ -45,6 +46,7 @@ pub use output::Output;
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, load_of};
+pub use refine::{RefineZone, Rows};
 pub use rigid::{RigidBody, RigidShape};
 pub use scatter::{Distribution, Reference, Scatter, Weibull};
 pub use solver::{
@@ -134,12 +136,14 @@ pub struct MeshSource {
     pub unit: f64,
     /// Whether a body is all of it: it then has the group [`WHOLE_MESH`].
     pub is_one_body: bool,
-    /// Solids whose coincident nodes become one, before edges are halved.
+    /// Solids whose coincident nodes become one, before anything else is done with the mesh.
     pub join: Option<Spanned<Vec<SolidGroup>>>,
     /// How often all edges are halved.
     pub halvings: u32,
     /// Random moves of inner nodes: share of the shortest edge [-], and seed.
     pub scramble: Option<(f64, u64)>,
+    /// Where elements become smaller, before all edges are halved.
+    pub refine: Vec<RefineZone>,
     /// Joints and grains, cut after that.
     pub network: Network,
 }

@@ -27,6 +27,7 @@ mod ppv;
 mod probes;
 mod rate;
 mod ratios;
+mod refine;
 mod rigid;
 mod scatter;
 mod solver;
@@ -280,6 +281,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     let parts = table
         .has("parts")
         .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
+    let refine = refine::read(&table);
     let network = network::read(&table, unit);
     table.finish("here");
     let Spanned { value, place } = file?;
@@ -290,7 +292,8 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     };
     let whole = |body: &Body| matches!(&body.kind, BodyKind::Solid(solid) if solid.group.value == WHOLE_MESH);
     let is_one_body = bodies.is_some_and(|bodies| bodies.iter().any(whole));
-    Some(Some(MeshSource { file, parts, unit, is_one_body, join: join?, halvings, scramble, network: network? }))
+    let (join, refine, network) = (join?, refine?, network?);
+    Some(Some(MeshSource { file, parts, unit, is_one_body, join, halvings, scramble, refine, network }))
 }
 
 /// The solids whose coincident nodes become one: nothing where none are joined.

@@ -176,6 +176,9 @@ impl Around<'_> {
             };
             set.extend(seed.map(|seed| (format!("bodies[{index}].seed"), (seed + more).to_string())));
         }
+        for (index, zone) in self.mesh.into_iter().flat_map(|mesh| &mesh.refine).enumerate() {
+            set.extend(zone.seed.map(|seed| (format!("mesh.refine[{index}].seed"), (seed + more).to_string())));
+        }
         if let Some(network) = self.mesh.map(|mesh| &mesh.network) {
             for (index, joints) in network.joints.iter().enumerate() {
                 if let JointSource::Set(known) = &joints.source {

@@ -55,6 +55,12 @@ Examples:
   fractum modes cases/vibrating-cantilever/depth-4.toml --count 4
   fractum movie results/vibrating-cantilever/depth-4-modes --mode 1";
 
+/// Of `fractum mesh refine`.
+pub(super) const REFINE: &str = "\
+Examples:
+  fractum mesh refine plate.msh --size 0.01 --where \"abs(y) < 0.05\" -o fine.msh
+  fractum mesh refine part.msh --unit mm --size \"2 mm\" --where \"x > 3 cm\" --keep-rows -o fine.vtu";
+
 /// Of `fractum completions`.
 pub(super) const COMPLETIONS: &str = "\
 Examples:

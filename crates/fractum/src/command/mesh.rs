@@ -1,4 +1,4 @@
-//! `fractum mesh info`, `fractum mesh joints` and `fractum mesh convert`.
+//! `fractum mesh info`, `fractum mesh joints`, `fractum mesh refine` and `fractum mesh convert`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,6 +10,7 @@ use fractum_case::{read_case, refuse_endless};
 use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
 
 use super::mesh_info::{self, Demand};
+use super::mesh_refine::{self, RefineArguments};
 use super::mesh_vtu;
 
 #[derive(Subcommand)]
@@ -36,6 +37,9 @@ pub(crate) enum MeshCommand {
         #[arg(long = "set", value_name = "NAME=VALUE", value_parser = super::assignment)]
         set: Vec<(String, String)>,
     },
+    /// Cut the elements of a zone into smaller ones, say what was made of them, and write the mesh.
+    #[command(after_help = super::help::REFINE)]
+    Refine(RefineArguments),
     /// Write a mesh in another format: Gmsh (.msh), or VTK for ParaView (.vtu).
     Convert {
         /// Gmsh (.msh, 2.2 or 4.1), Abaqus (.inp) or VTK (.vtu).
@@ -83,6 +87,7 @@ pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Fail
             }
         }
         MeshCommand::Joints { case, output, set } => joints(&case, output.as_deref(), &set)?,
+        MeshCommand::Refine(arguments) => mesh_refine::run(&arguments)?,
         MeshCommand::Convert { file, output, parts, to } => write(|| read(&file, parts), &output, to)?,
     }
     Ok(ExitCode::Done)
@@ -104,7 +109,11 @@ fn joints(case: &Path, output: Option<&Path>, set: &[(String, String)]) -> Resul
 }
 
 /// Writes a mesh in the format that the ending of a file says.
-fn write(mesh: impl FnOnce() -> Result<Mesh, Failure>, output: &Path, to: Option<Target>) -> Result<(), Failure> {
+pub(super) fn write(
+    mesh: impl FnOnce() -> Result<Mesh, Failure>,
+    output: &Path,
+    to: Option<Target>,
+) -> Result<(), Failure> {
     let wrong = |text: &str| Err(Failure::input(format!("{}: {text}", output.display())));
     let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (ending.as_str(), to) {
@@ -130,7 +139,7 @@ fn read(file: &Path, parts: Option<u32>) -> Result<Mesh, Failure> {
     joined(&meshes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }
 
-fn read_one(file: &Path) -> Result<Mesh, Failure> {
+pub(super) fn read_one(file: &Path) -> Result<Mesh, Failure> {
     refuse_endless(file).map_err(|error| Failure::input(format!("{} {error}", file.display())))?;
     let bytes =
         fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;

@@ -9,6 +9,7 @@ mod lab_pictures;
 mod manual;
 mod mesh;
 mod mesh_info;
+mod mesh_refine;
 mod mesh_vtu;
 mod modes;
 mod movie;

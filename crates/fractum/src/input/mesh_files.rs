@@ -4,7 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use fractum_case::build::{SolidDivision, cannot_divide, cut_mesh, cut_network, divide, replicated_bodies};
+use fractum_case::build::{
+    SolidDivision, cannot_divide, cut_mesh, cut_network, divide, refine_mesh, refined_count, replicated_bodies,
+};
 use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_math::Vec3;
@@ -60,13 +62,16 @@ impl MeshFiles {
         };
         let reason = source.parts.filter(|_| processes.all > 1).and_then(|_| cannot_divide(case));
         let is_part = source.parts.is_some() && processes.all > 1 && reason.is_none();
-        if is_part
-            && (source.scramble.is_some() || source.halvings > 0 || source.join.is_some() || !source.network.is_empty())
-        {
+        let is_changed = source.scramble.is_some()
+            || source.halvings > 0
+            || source.join.is_some()
+            || !source.refine.is_empty()
+            || !source.network.is_empty();
+        if is_part && is_changed {
             let remedy = "leave out mesh.parts, or write the mesh first and cut it then";
             return Err(fail(
                 source,
-                ": parts that several processes read are neither joined, halved, scrambled nor cut by joints"
+                ": parts that several processes read are neither joined, refined, halved, scrambled nor cut by joints"
                     .to_owned(),
                 remedy,
             ));
@@ -117,7 +122,7 @@ pub(crate) fn mesh_hash(case: &Case) -> Result<u128, Failure> {
     Ok(hash(&hashes.collect::<Result<Vec<_>, Failure>>()?))
 }
 
-/// The mesh of a case in metres, joined, moved, halved and with its joints and grains as the case says; interfaces are not cut yet. And what is doubtful.
+/// The mesh of a case in metres, joined, moved, refined, halved and with its joints and grains as the case says; interfaces are not cut yet. And what is doubtful.
 ///
 /// # Errors
 /// [`Failure::Input`] for a case without a mesh, and for what cannot be read or cut.
@@ -164,6 +169,12 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Fa
     let mut warnings = source.join.as_ref().map_or_else(Vec::new, |join| join_solids(&mut mesh, join));
     if let Some((share, seed)) = source.scramble {
         mesh = scrambled(&mesh, share, seed);
+    }
+    if !source.refine.is_empty() {
+        // What an element takes while it is cut, with its nodes, edges and places in lists.
+        let bytes = 400.0 * refined_count(&source.refine, &mesh) * processes.here as f64;
+        memory::require(bytes as u64, "refining the mesh (mesh.refine)".to_owned())?;
+        warnings.extend(refine_mesh(&source.refine, &mut mesh).map_err(Failure::Input)?);
     }
     for _ in 0..source.halvings {
         let bytes = 8 * 100 * mesh.element_count() as u64 * processes.here as u64;
