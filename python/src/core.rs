@@ -134,8 +134,17 @@ impl Core {
         told: (bool, bool),
     ) -> PyResult<Self> {
         let ((resume, overwrite), (quiet, strict)) = (begin, told);
-        let options =
-            Options { output, threads, overrides: set, resume, overwrite, quiet, strict, cache: cache_of_user() };
+        let options = Options {
+            output,
+            threads,
+            overrides: set,
+            resume,
+            overwrite,
+            quiet,
+            strict,
+            cache: cache_of_user(),
+            pass: None,
+        };
         let (pool, looks) = (pool(py, threads)?, pool(py, threads)?);
         let opened = watch(py, &pool, || {
             let started = Instant::now();

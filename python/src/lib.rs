@@ -40,7 +40,17 @@ fn run(
     told: (bool, bool),
 ) -> PyResult<(PathBuf, bool)> {
     let ((resume, overwrite), (quiet, strict)) = (begin, told);
-    let options = Options { output, threads, overrides: set, resume, overwrite, quiet, strict, cache: cache_of_user() };
+    let options = Options {
+        output,
+        threads,
+        overrides: set,
+        resume,
+        overwrite,
+        quiet,
+        strict,
+        cache: cache_of_user(),
+        pass: None,
+    };
     // A thread that waits for those of the run.
     let host = pool(py, Some(1))?;
     let outcome = watch(py, &host, || fractum::run(&case, &options))?.map_err(|failure| raise(py, &failure))?;

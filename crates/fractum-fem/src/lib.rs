@@ -59,7 +59,7 @@ pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
 pub use fractum_kernels::material::{
     BedStrength, Bedding, Criterion, CriterionKind, DamageLaw, Degradation, EXCESS_OF_PEAK, Elastic, Plane, Softening,
-    Stiffness, Wave,
+    Stiffness, Wave, crack_scale,
 };
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};

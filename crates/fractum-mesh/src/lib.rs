@@ -35,6 +35,7 @@
 mod abaqus;
 mod coincident;
 mod cut;
+mod free;
 pub mod generate;
 mod gmsh;
 mod hints;
@@ -62,7 +63,7 @@ pub use joints::{
 };
 pub use mesh::{CutFace, Group, Mesh, WholeMesh};
 pub use neighbour::{halved, scrambled};
-pub use refine::{RefineError, RefineOptions, Refined, estimated_elements, longest_edge, refined};
+pub use refine::{RefineError, RefineOptions, Refined, bytes_to_refine, longest_edge, refined};
 pub use tagged::{MeshError, Place, Problem};
 pub use vtk::read_vtu;
 

@@ -2,8 +2,8 @@
 
 use fractum_math::Vec3;
 
+use crate::free::{WORST_SHAPE, around_nodes, free_nodes};
 use crate::quality::{signed_volume, tetrahedron, triangle};
-use crate::refine::free::{around_nodes, free_nodes};
 use crate::{Group, Mesh, generate::unit_interval};
 
 /// The mesh with every edge halved: a triangle becomes 4, a quadrilateral 4, a tetrahedron 8 (the inner octahedron is cut along its
@@ -103,9 +103,6 @@ impl Middles {
         self.first + self.edges.partition_point(|other| *other < edge) as u32
     }
 }
-
-/// Smallest radius ratio (1 for an equilateral element) that a moved node may leave to an element, unless it was smaller before.
-pub(crate) const WORST_SHAPE: f64 = 0.3;
 
 /// The mesh with its inner nodes moved at random by up to `share` of the shortest edge at each. Nodes of sides, of lines and surfaces
 /// of the mesh, and between groups stay; so does a node whose move would leave an element misshapen.

@@ -1,7 +1,7 @@
 //! What a run writes and reads again: numbers to compute with, frames to look at, states to go on from.
 //!
 //! - To compute with: [`history`] (`history.csv`, whose [`columns`] are one list), [`summary`] (`summary.json`), [`verified`]
-//!   (`verify.json`), [`expectation`], [`fragments`], [`attenuation`]; [`study`] is what several runs say together
+//!   (`verify.json`), [`expectation`], [`fragments`], [`attenuation`], [`accuracy`]; [`study`] is what several runs say together
 //! - To look at: [`frames`] (ParaView), whose [`fields`] are one list, and [`notes`] for the report
 //! - While it runs: [`log`] (`run.log` and the progress line), [`checkpoint`] (stop and go on, bit for bit)
 //! - For all of them: [`atomic`] (files that are whole or absent), [`number`] (numbers and units as text), [`warning`] (the
@@ -25,6 +25,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod accuracy;
 pub mod atomic;
 pub mod attenuation;
 pub mod beside;

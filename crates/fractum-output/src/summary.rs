@@ -10,6 +10,7 @@ use std::path::Path;
 use fractum_scene::{EnergyKind, Ledger};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::accuracy::Accuracy;
 use crate::attenuation::Attenuation;
 use crate::error::ReadError;
 use crate::expectation::Expectation;
@@ -51,6 +52,9 @@ pub struct Summary {
     pub probes: BTreeMap<String, Probe>,
     /// What the case expected, and what came out.
     pub expect: Vec<Expectation>,
+    /// Runs on several meshes and what they say of peaks, where the case asked for an accuracy.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub accuracy: Option<Accuracy>,
     /// The energy ledger at the end.
     pub energy: Energy,
     /// What became of the bonds of each body whose bonds can break.

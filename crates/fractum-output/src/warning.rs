@@ -157,6 +157,8 @@ codes! {
     MergedBands = "merged-bands",
     /// Elements too large for the strength at their rate of strain.
     RateLimited = "rate-limited",
+    /// An accuracy that was asked for and not reached.
+    Accuracy = "accuracy",
 }
 
 impl fmt::Display for Code {

@@ -46,8 +46,10 @@
 
 #![forbid(unsafe_code)]
 
+mod accuracy;
 mod error;
 mod input;
+mod kept;
 mod output;
 mod phases;
 pub mod plan;

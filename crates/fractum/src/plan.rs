@@ -115,6 +115,16 @@ impl Plan {
             plan.add("choice", choice);
         }
         plan.describe_solver(case, built, case.solver.end);
+        if let Some(asked) = case.asked_accuracy() {
+            plan.add(
+                "accuracy",
+                format!(
+                    "up to {} runs on meshes that are refined where damage came, until the load is known to {} in 9 of 10 cases; this is the plan of the first",
+                    asked.most_runs,
+                    percent(asked.share.value)
+                ),
+            );
+        }
         plan.describe_heat(case, scene);
         plan.describe_gauges(case, &built.gauges);
         let mut start = case.solver.end;

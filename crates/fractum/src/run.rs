@@ -1,14 +1,13 @@
-//! One case, from its file to its results folder.
+//! One case, from its file to its results folder: by one run, or by several where it asks for an accuracy.
 
 use std::path::Path;
 
-use fractum_math::Vec3;
-use fractum_scene::Scene;
+use fractum_case::{Diagnostic, Diagnostics, read_case};
 
+use crate::accuracy;
 use crate::error::Failure;
-use crate::process::pool;
 use crate::process::ranks::Ranks;
-use crate::simulation::{Options, Outcome, Simulation};
+use crate::simulation::{Measure, Options, Outcome, run_whole};
 
 /// Runs the case at `path` on threads of its own.
 ///
@@ -26,17 +25,6 @@ pub fn run_shared(path: &Path, options: &Options, ranks: Ranks) -> Result<Outcom
     measure(path, options, ranks).map(|(outcome, _)| outcome)
 }
 
-/// What a run took beside what its summary tells.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Measure {
-    /// Processor time of all its threads [s] where the system tells it.
-    pub(crate) processor: Option<f64>,
-    /// Mean length of the edges of all elements, else mean diameter of the particles [m].
-    pub(crate) size: f64,
-    /// Particles of bonded and loose bodies.
-    pub(crate) particles: u64,
-}
-
 /// As [`run`], and what it took.
 ///
 /// # Errors
@@ -46,43 +34,11 @@ pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, M
 }
 
 fn measure(path: &Path, options: &Options, ranks: Ranks) -> Result<(Outcome, Measure), Failure> {
-    let pool = pool(options.threads)?;
-    // Inside the pool, parallel loops start without a hand-over between threads.
-    let (outcome, size, particles) = pool.install(|| {
-        let mut simulation = Simulation::open_shared(path, options, ranks)?;
-        let (size, particles) = (size(simulation.scene()), simulation.scene().bonded.particles.len() as u64);
-        while !simulation.is_over() {
-            simulation.step()?;
-            simulation.record()?;
-        }
-        Ok::<_, Failure>((simulation.finish()?, size, particles))
-    })?;
-    let processor = pool.broadcast(|_| processor_time()).into_iter().sum();
-    Ok((outcome, Measure { processor, size, particles }))
-}
-
-/// Mean length of the edges of all elements, else mean diameter of the particles [m].
-fn size(scene: &Scene) -> f64 {
-    let solid = &scene.solid;
-    let (mut length, mut count) = (0.0, 0usize);
-    for body in (0..solid.body_count()).map(|body| solid.body(body)) {
-        body.each_edge(solid.reference.len(), |ends| {
-            let [a, b]: [Vec3; 2] = ends.map(|node| solid.reference[node as usize]);
-            length += (b - a).norm();
-            count += 1;
-        });
+    let case = ranks.together(read_case(path, &options.overrides).map_err(Failure::from))?;
+    let Some(asked) = case.asked_accuracy() else { return run_whole(path, options, ranks) };
+    if ranks.processes().all > 1 {
+        let note = Diagnostic::error(&asked.share.place, "in a run of several processes");
+        return Err(Failure::Input(Diagnostics(vec![note.expected("one process; threads are not limited")])));
     }
-    if count == 0 {
-        let radius = &scene.bonded.particles.radius;
-        // Those that have left have negative radii.
-        (length, count) = (2.0 * radius.iter().map(|radius| radius.abs()).sum::<f64>(), radius.len());
-    }
-    length / count as f64
-}
-
-/// Processor time of this thread [s], as Linux tells it.
-fn processor_time() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split_whitespace().next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
+    accuracy::run(path, &case, asked, options)
 }

@@ -1,6 +1,7 @@
 //! One run that can be driven step by step.
 
 mod audit;
+mod damaged;
 mod drive;
 mod end;
 mod finish;
@@ -8,6 +9,7 @@ mod messages;
 mod modes;
 mod open;
 mod origin;
+mod whole;
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -39,10 +41,14 @@ use crate::process::interrupt::{UnderWay, is_interrupted};
 use crate::process::last_words::LastWords;
 use crate::process::ranks::Ranks;
 use crate::solver::{Measured, Solver, SolverState};
+pub(crate) use damaged::Damaged;
 use end::End;
 use messages::Messages;
+pub(crate) use open::{PASSES, begin_results, results_folder};
 pub use origin::for_shell;
+pub(crate) use origin::keep_case;
 pub(crate) use origin::kept_hash;
+pub(crate) use whole::{Measure, run_whole};
 
 /// How a case is run.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +69,14 @@ pub struct Options {
     pub strict: bool,
     /// Where packings and beams of bonded bodies are kept.
     pub cache: Cache,
+    /// A pass of a case that asks for an accuracy: it leaves `damaged.json`, and all but the first leave plan and warnings to their logs.
+    pub pass: Option<usize>,
+}
+
+impl Options {
+    fn is_later_pass(&self) -> bool {
+        self.pass.is_some_and(|pass| pass > 0)
+    }
 }
 
 /// A run that ended by itself or was interrupted.

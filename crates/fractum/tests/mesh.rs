@@ -137,7 +137,7 @@ fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
     let beside = info(&["--case", "case.toml"]);
     // 30 GPa x 100 J/m2 / (3 MPa)2; twice and a sixteenth of that.
     for part in
-        ["edges of tetrahedra: 40 mm to ", "E Gf/ft\u{b2} = 333.3 mm", "below 666.7 mm", "below 20.83 mm: coarse"]
+        ["edges of tetrahedra: 40 mm to ", "E Gf/ft\u{b2} = 333.3 mm", "below 666.7 mm", "below 25.64 mm: coarse"]
     {
         assert!(beside.contains(part), "{part}: {beside}");
     }
@@ -157,4 +157,53 @@ fn information_on_a_mesh_is_in_the_unit_of_the_case_and_beside_its_material() {
     let without = Workplace::with_mesh("", &crate::common::mesh_bytes(&mesh, fractum_mesh::MshFormat::V2_2Ascii));
     let said = without.fractum(&["mesh", "info", "bar.msh"]).stdout;
     assert!(said.contains("hint: no groups: a case names bodies"), "{said}");
+}
+
+#[test]
+fn a_zone_is_refined_by_the_command_as_by_the_case() {
+    let zone = "x > 0.1 m && x < 0.2 m";
+    let workplace = Workplace::new(BREAKING_BAR);
+    let case = BREAKING_BAR.replace(
+        "file = \"bar.msh\"",
+        &format!("file = \"bar.msh\"\n[[mesh.refine]]\nwhere = \"{zone}\"\nsize = \"30 mm\""),
+    );
+    fs::write(workplace.path("fine.toml"), case).unwrap();
+    let told = workplace.fractum(&["mesh", "refine", "bar.msh", "--where", zone, "--size", "3 cm", "-o", "fine.msh"]);
+    assert!(told.code == Some(0) && told.stdout.starts_with("refined: "), "{told:?}");
+    assert!(told.stdout.contains(" tetrahedra of 432; edges there up to 3") && told.stdout.contains("rows broken up"));
+    let of_case = workplace.fractum(&["mesh", "refine", "fine.toml", "-o", "case.msh"]);
+    assert_eq!((of_case.code, &of_case.stdout), (Some(0), &told.stdout), "{of_case:?}");
+    let read = |name: &str| read_msh(&fs::read(workplace.path(name)).unwrap()).unwrap();
+    let (fine, known) = (read("fine.msh"), bar());
+    assert_eq!((&fine.nodes, fine.group_names()), (&read("case.msh").nodes, known.group_names()));
+    assert!(fine.tetrahedra.len() > 4 * known.tetrahedra.len());
+    // In another unit it is the same, and so is the case, which runs on.
+    let unit = ["--unit", "1 mm", "--where", "x > 0.1 mm && x < 0.2 mm", "--size", "30 um", "-o", "mm.msh"];
+    let of_unit = workplace.fractum(&[&["mesh", "refine", "bar.msh"], &unit[..]].concat());
+    assert!(of_unit.code == Some(0) && read("mm.msh").tetrahedra.len() == fine.tetrahedra.len(), "{of_unit:?}");
+    fs::write(workplace.path("whole.toml"), BREAKING_BAR.replace("bar.msh", "fine.msh")).unwrap();
+    let hash = |case: &str| {
+        let ended = workplace.fractum(&["run", case, "-o", case.trim_end_matches(".toml"), "--quiet"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let summary = fs::read(workplace.path(case.trim_end_matches(".toml")).join("summary.json")).unwrap();
+        serde_json::from_slice::<serde_json::Value>(&summary).unwrap()["state_hash"].clone()
+    };
+    assert_eq!(hash("fine.toml"), hash("whole.toml"));
+    let kept = workplace.fractum(&["mesh", "refine", "bar.msh", "--size", "30 mm", "--keep-rows", "-o", "kept.vtu"]);
+    assert!(kept.code == Some(0) && kept.stdout.contains("rows kept"), "{kept:?}");
+    for (arguments, says) in [
+        (&["bar.msh"][..], "--size is missing"),
+        (&["bar.msh", "--size", "0"], "--size \"0\"; expected a length above 0"),
+        (&["bar.msh", "--size", "3 s"], "is a time; expected a length"),
+        (&["bar.msh", "--size", "3 cm", "--where", "x + 1"], "expected a condition such as"),
+        (&["bar.msh", "--size", "3 cm", "--where", "x > 5"], "no element of the mesh lies where --where holds"),
+        (&["bar.msh", "--size", "1 um"], "more than 50000000 elements would come of it; a larger size, with its unit"),
+        (&["case.toml"], "this case has no mesh.refine"),
+        (&["fine.toml", "--size", "3 cm"], "a case says them in mesh.refine"),
+        (&["bar.msh", "--size", "3 cm", "--set", "a=1"], "--set is for cases"),
+    ] {
+        let wrong = workplace.fractum(&[&["mesh", "refine"], arguments].concat());
+        assert!(wrong.code == Some(1) && wrong.stderr.contains(says), "{says}: {wrong:?}");
+        assert_eq!(wrong.stderr.lines().count(), 1, "{wrong:?}");
+    }
 }

@@ -2,6 +2,7 @@
 
 mod common;
 
+mod accuracy;
 mod bonded;
 mod book;
 mod breaking;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use fractum_fem as fem;
 use fractum_fem::{
     CriterionKind, DamageLaw, DamageZone, EXCESS_OF_PEAK, Elastic, Formulation, LengthReport, Plane, Region, Solid,
-    motion,
+    crack_scale, motion,
 };
 use fractum_math::Vec3;
 use fractum_mesh::renumber::hilbert_order;
@@ -352,11 +352,7 @@ fn excess_warning(
 ) -> Option<Diagnostic> {
     let zone = case.materials[part.body.material].process_zone().filter(|_| part.body.damage)?;
     let extent = body.smallest_extent(notches.nodes);
-    let (whole, name) = if zone <= extent {
-        (zone, "the process zone E Gf/ft^2 of")
-    } else {
-        (extent, "the smallest extent of the body,")
-    };
+    let whole = crack_scale(zone, extent);
     let [excess, most] = EXCESS_OF_PEAK.map(|factor| factor * size / whole);
     if excess < LARGE_EXCESS || !(notches.has(body) || case.interfaces.iter().any(|own| !own.law.is_bonded())) {
         return None;
@@ -368,10 +364,13 @@ fn excess_warning(
         Formulation::Standard => format!("are off by {:.0} % at most", 100.0 * most),
     };
     let found = format!(
-        ": elements of {} where cracks are expected are {:.2} of {name} {}: loads at which cracks run from notches {off}{}{}",
+        ": elements of {} where cracks are expected are {:.2} of the {} that the process zone E Gf/ft^2 of {} and the smallest extent of the body of {} \
+         make in series: loads at which cracks run from notches {off}{}{}",
         quantity(size, "m"),
         size / whole,
         quantity(whole, "m"),
+        quantity(zone, "m"),
+        quantity(extent, "m"),
         if longest.is_some() { "; " } else { "" },
         longest.unwrap_or_default()
     );

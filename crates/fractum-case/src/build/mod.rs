@@ -38,7 +38,7 @@ pub use doubts::doubts;
 pub use interfaces::{cut_mesh, process_zone};
 pub use network::cut_network;
 pub use ppv::PpvStations;
-pub use refine::{refine_mesh, refined_count, remedy as refine_remedy, told as refine_told};
+pub use refine::{refine_bytes, refine_mesh, remedy as refine_remedy, told as refine_told};
 pub use statics::may_rest;
 pub use strength::WeibullReport;
 pub use ties::TieReport;

@@ -1,15 +1,15 @@
 //! Smaller elements where a case asks for them.
 
-use fractum_mesh::{Mesh, RefineError, RefineOptions, Refined, Vec3, estimated_elements, longest_edge, refined};
+use fractum_mesh::{Mesh, RefineError, RefineOptions, Refined, Vec3, bytes_to_refine, longest_edge, refined};
 use fractum_output::number::{grouped, quantity, significant};
 use fractum_output::warning::Code;
 
 use crate::model::RefineZone;
 use crate::{Diagnostic, Diagnostics};
 
-/// About how many elements a mesh has once it is refined.
-pub fn refined_count(zones: &[RefineZone], mesh: &Mesh) -> f64 {
-    estimated_elements(mesh, &|at| finest(zones, at).map_or(f64::INFINITY, |zone| zone.size))
+/// About how much memory it takes to refine a mesh [bytes].
+pub fn refine_bytes(zones: &[RefineZone], mesh: &Mesh) -> u64 {
+    bytes_to_refine(mesh, &|at| finest(zones, at).map_or(f64::INFINITY, |zone| zone.size))
 }
 
 /// Refines a mesh in the zones of a case; what was made is told in its notices.

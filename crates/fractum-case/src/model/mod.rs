@@ -50,7 +50,8 @@ pub use refine::{RefineZone, Rows};
 pub use rigid::{RigidBody, RigidShape};
 pub use scatter::{Distribution, Reference, Scatter, Weibull};
 pub use solver::{
-    Control, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions, StopWhen, TimeStep,
+    AskedAccuracy, Control, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions, StopWhen,
+    TimeStep,
 };
 pub use tie::Tie;
 pub use verify::{NEIGHBOURS, Neighbour, Promise, Saying, Verify};
@@ -239,6 +240,12 @@ const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
 ];
 
 impl Case {
+    /// The accuracy that it or one of its stages asks for; the last one where several do.
+    pub fn asked_accuracy(&self) -> Option<&AskedAccuracy> {
+        let stages = std::iter::once(self).chain(&self.later);
+        stages.filter_map(|stage| stage.solver.accuracy.as_ref()).next_back()
+    }
+
     /// Whether rock may be crushed in it: a pressure pulse, or gas, on a solid in motion.
     pub fn is_blast(&self) -> bool {
         let pulse =

@@ -36,10 +36,21 @@ pub struct Solver {
     pub domain: Option<Spanned<fractum_scene::Domain>>,
     /// Early end.
     pub stop_when: Option<StopWhen>,
+    /// How near to the truth the load shall be; `None` = one run, as it comes.
+    pub accuracy: Option<AskedAccuracy>,
     /// Energy imbalance over external work at which to warn [-].
     pub balance_warning: f64,
     /// Energy imbalance over external work at which to stop [-].
     pub balance_stop: f64,
+}
+
+/// An accuracy that is asked for, by several runs on meshes of their own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AskedAccuracy {
+    /// Half of the error bar of the load over the load [-].
+    pub share: Spanned<f64>,
+    /// Runs at most.
+    pub most_runs: usize,
 }
 
 /// Kinds of solvers.

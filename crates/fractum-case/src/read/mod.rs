@@ -153,7 +153,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
     }
 }
 
-/// Replaces a parameter, which must be there, or the value at a dotted key.
+/// Replaces a parameter, which must be there, the value at a dotted key, or a whole table by another one.
 fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Box<Diagnostic>> {
     if name.contains('.') {
         let parameter = name.strip_prefix("parameters.").unwrap_or_default();
@@ -162,6 +162,9 @@ fn override_value(root: &mut Node, name: &str, node: Node) -> Result<(), Box<Dia
     let declared = parameters::declared(root);
     if declared.iter().any(|known| known == name) {
         return tree::set(root, &format!("parameters.{name}"), node);
+    }
+    if matches!(node.value, tree::Value::Table(_)) {
+        return tree::set(root, name, node);
     }
     let error = Diagnostic::error(&node.place, "is not a parameter of this case");
     Err(Box::new(match super::nearest(name, declared.iter().map(String::as_str)) {
@@ -205,6 +208,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     if stage.is_empty() {
         solver::tell_at_rest(&table, solver.as_ref());
     }
+    solver::refuse_accuracy(&table, solver.as_ref(), bodies.as_deref(), &materials);
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
     let liquid = liquid::read(&table);

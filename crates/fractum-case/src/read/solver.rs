@@ -1,19 +1,20 @@
 //! `[damping]` and `[solver]`.
 
 use fractum_dem::Batch;
+use fractum_fem::Formulation;
 use fractum_output::warning::Code;
 use fractum_scene::Domain;
 use fractum_scene::statics::{LinearSolver, NoEquilibrium};
 
 use super::probes::ReadProbe;
 use crate::model::{
-    Body, BodyKind, Control, Damping, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions,
-    StopWhen, TimeStep,
+    AskedAccuracy, Body, BodyKind, Control, Damping, InitialOverlap, Material, ModesOptions, Opening, Solver,
+    SolverKind, StaticOptions, StopWhen, TimeStep,
 };
 use crate::reader::Table;
 use crate::reader::vectors::{direction, point};
 use crate::tree::{Entry, Value};
-use crate::{Choice, Diagnostic, Place, Spanned};
+use crate::{Choice, Diagnostic, Dimension, Place, Spanned};
 
 /// Reads the damping, which may belong to another stage; which keys have an effect depends on the solver, and on the bodies where they are known.
 pub(super) fn damping(root: &Table<'_>, bodies: Option<&[Body]>, staged: bool) -> Damping {
@@ -130,6 +131,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
     let initial_overlap = table.choice("initial_overlap").or(InitialOverlap::Push);
     let domain = if table.has("domain") { domain(&table).map(Some) } else { Some(None) };
     let stop_when = if table.has("stop_when") { stop_when(&table, probes).map(Some) } else { Some(None) };
+    let accuracy = accuracy(&table, kind, probes, bodies);
     let balance_warning = table.quantity("balance_warning").positive().or(1e-3);
     let expected = format!("at least balance_warning, which is {balance_warning}");
     let balance_stop = table.quantity("balance_stop").check(|stop| *stop >= balance_warning, &expected);
@@ -149,9 +151,76 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         statics: statics?,
         modes,
         stop_when: stop_when?,
+        accuracy,
         balance_warning,
         balance_stop,
     })
+}
+
+/// An accuracy that is asked for, which needs a crack that may run and a load that tells it.
+fn accuracy(
+    table: &Table<'_>,
+    kind: Option<SolverKind>,
+    probes: &[ReadProbe],
+    bodies: Option<&[Body]>,
+) -> Option<AskedAccuracy> {
+    for key in ["accuracy", "accuracy_runs"] {
+        match kind {
+            Some(kind @ (SolverKind::Heat | SolverKind::Modes)) => {
+                table.refuse(key, &format!("with kind = \"{}\", where nothing breaks", kind.name()));
+            }
+            _ if !bodies.is_none_or(|bodies| bodies.iter().any(may_crack)) => {
+                table.refuse(key, "where no solid has damage: its meshes are refined where damage comes");
+            }
+            _ => {}
+        }
+    }
+    let is_load =
+        |probe: &ReadProbe| probe.dimension.is_none_or(|own| [Dimension::FORCE, Dimension::ENERGY].contains(&own));
+    let share = table.quantity("accuracy");
+    let share =
+        share.check(|share| *share == 0.0 || (0.002..=0.5).contains(share), "from 0.2 % to 50 %, or 0 for one run");
+    let share = share.spanned().given().filter(|share| share.value > 0.0);
+    let runs = table.integer("accuracy_runs").check(|runs| (4..=100).contains(runs), "from 4 to 100");
+    let most_runs = runs.or(12) as usize;
+    let share = share?;
+    if !probes.iter().any(is_load) {
+        let note = Diagnostic::error(&share.place, ": no probe measures a load, whose error it limits".to_owned());
+        table
+            .reader
+            .note(note.remedy("add one, such as [[probes]] with reaction = { group = \"top\", along = \"y\" }"));
+    }
+    Some(AskedAccuracy { share, most_runs })
+}
+
+/// Refuses an accuracy where error bars were not held against exact loads.
+pub(super) fn refuse_accuracy(
+    root: &Table<'_>,
+    solver: Option<&Solver>,
+    bodies: Option<&[Body]>,
+    materials: &[(String, Option<Material>)],
+) {
+    let (Some(asked), Some(bodies)) = (solver.and_then(|solver| solver.accuracy.as_ref()), bodies) else { return };
+    let solids = bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) if solid.damage => Some((body, solid)),
+        _ => None,
+    });
+    for (body, solid) in solids {
+        let damage = materials.get(solid.material).and_then(|(_, material)| material.as_ref()?.damage.as_ref());
+        let what = if damage.is_some_and(|damage| damage.value.regularisation.is_some()) {
+            ("a phase field", "leave regularisation out")
+        } else if solid.formulation == Formulation::Standard {
+            ("standard elements", "leave formulation out")
+        } else {
+            continue;
+        };
+        let found = format!(": error bars are not known with {} (body \"{}\")", what.0, body.name.value);
+        root.reader.note(Diagnostic::error(&asked.share.place, found).remedy(what.1));
+    }
+}
+
+fn may_crack(body: &Body) -> bool {
+    matches!(&body.kind, BodyKind::Solid(solid) if solid.damage)
 }
 
 /// What natural vibrations are looked for with; nothing with another solver.

@@ -10,6 +10,7 @@ mod gas;
 mod heat;
 mod network;
 mod notches;
+mod refine;
 mod selection;
 mod sides;
 mod weibull;

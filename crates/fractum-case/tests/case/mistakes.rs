@@ -242,7 +242,7 @@ fn each_mistake_has_one_clear_message() {
             "end = 1e-3\nqqqqqq = 0.5",
             "15:1: solver.qqqqqq is not a key; keys here: kind, end, safety, time_step, step, subcycling, initial_overlap, domain, control, \
              opening, linear_solver, tolerance, batch, no_equilibrium, max_steps, count, stop_when, \
-             balance_warning, balance_stop",
+             accuracy, accuracy_runs, balance_warning, balance_stop",
         ),
         (
             "kind = \"solid\"",
@@ -535,7 +535,7 @@ fn files_that_are_no_cases_are_refused() {
 }
 
 #[test]
-fn mistakes_about_joints_and_grains_are_told_where_they_stand() {
+fn mistakes_about_changes_of_meshes_are_told_where_they_stand() {
     let cases: &[(&str, &str)] = &[
         ("[[mesh.joints]]\nspacing = 1", "4:1: mesh.joints[0] has none of table, angle, dip; expected exactly one"),
         (
@@ -558,6 +558,9 @@ fn mistakes_about_joints_and_grains_are_told_where_they_stand() {
         ("[[mesh.joints]]\ntable = \"motion.csv\"", "motion.csv:2:1: 2 numbers; expected 4 of a trace, or 6 of a disc"),
         ("[mesh.grains]\nsize = 1\nshare = 2", "6:9: mesh.grains.share = 2; expected from 0.1 to 1"),
         ("[mesh.grains]\nseed = 1", "4:1: mesh.grains.size is missing"),
+        ("[[mesh.refine]]\nwhere = \"x > 0\"", "4:1: mesh.refine[0].size is missing"),
+        ("[[mesh.refine]]\nsize = 0", "5:8: mesh.refine[0].size = 0; expected"),
+        ("[[mesh.refine]]\nsize = 1\nwhere = \"x + 1\"", "6:9: mesh.refine[0].where = \"x + 1\", which is a length"),
     ];
     for (network, message) in cases {
         let found = mistakes(&SMALL.replacen("[materials.steel]", &format!("{network}\n[materials.steel]"), 1));

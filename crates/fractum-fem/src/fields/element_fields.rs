@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 
 use crate::body::edges::BodyEdges;
@@ -11,6 +11,7 @@ use crate::cells::block::Cells;
 use crate::cells::kernel;
 use crate::damage::edge::EdgeField;
 use crate::divided::{ALONE, ELSEWHERE, EdgeValue};
+use crate::element::{measure_and_gradients, regular_edge};
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::Block;
@@ -153,6 +154,19 @@ pub(crate) fn cells_with(solid: &Solid, (block, cell): (u32, u32)) -> (Cow<'_, C
         return (Cow::Borrowed(&block.cells), cell);
     }
     (Cow::Owned(solid.bodies[block.body].cells(&solid.reference, &block.items[cell..=cell])), 0)
+}
+
+/// Elements of a body with more damage than that: centre in the undeformed body, and edge of the regular element of the same size [m].
+pub fn damaged_elements(solid: &Solid, index: usize, above: f64) -> Vec<(Vec3, f64)> {
+    let body = &solid.bodies[index].body;
+    let count = body.shape.node_count();
+    let of_element = |(element, damage): (&[u32; 4], f64)| {
+        let corners = element.map(|node| solid.reference[node as usize]);
+        let centre = corners[..count].iter().sum::<Vec3>() / count as f64;
+        let (measure, _) = measure_and_gradients(body.shape, &corners);
+        (damage > above).then(|| (centre, regular_edge(body.shape, measure)))
+    };
+    body.elements.iter().zip(element_damages(solid, index)).filter_map(of_element).collect()
 }
 
 /// Damage of the elements of a body: the mean over its edges where it is smoothed, 1 where one has been removed.

@@ -12,7 +12,7 @@ pub use bedding::{Bedding, Stiffness};
 #[cfg(test)]
 pub(crate) use criterion::KINDS;
 pub use criterion::{Criterion, CriterionKind, equivalent_stresses};
-pub use damage_law::{BedStrength, DamageLaw, EXCESS_OF_PEAK};
+pub use damage_law::{BedStrength, DamageLaw, EXCESS_OF_PEAK, crack_scale};
 pub use degradation::Degradation;
 pub use elastic::{Elastic, Hooke, Plane};
 pub use softening::Softening;

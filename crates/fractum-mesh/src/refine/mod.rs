@@ -1,7 +1,6 @@
 //! Smaller elements where they are asked for.
 
 mod bisect;
-pub(crate) mod free;
 mod rows;
 mod simplices;
 
@@ -9,6 +8,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::coincident::same_places;
+use crate::free::is_plane;
 use crate::quality::{Summary, area_vector, signed_volume, summarize_tetrahedra, summarize_triangles};
 use crate::topology::{edges_of_tetrahedra, edges_of_triangles};
 use crate::{Group, Mesh};
@@ -16,7 +16,13 @@ use bisect::Bisection;
 use simplices::parts;
 
 /// Area of a triangle over the square of the size that it is refined to, and volume of a tetrahedron over the cube, in the mean.
-const OF_SIZE: [f64; 2] = [0.22, 0.03];
+const OF_SIZE: [f64; 2] = [0.22, 0.022];
+/// Elements at most, where nothing else is said.
+const MOST: usize = 50_000_000;
+/// Estimates beyond this multiple of the most are refused before an element is made.
+const FAR_BEYOND: f64 = 4.0;
+/// Memory that an element takes while a mesh is refined [bytes].
+const OF_ELEMENT: f64 = 300.0;
 
 /// What is asked beside the size of elements.
 #[derive(Clone, Copy)]
@@ -29,7 +35,7 @@ pub struct RefineOptions<'a> {
 
 impl Default for RefineOptions<'_> {
     fn default() -> Self {
-        RefineOptions { seed: &|_| None, most: 50_000_000 }
+        RefineOptions { seed: &|_| None, most: MOST }
     }
 }
 
@@ -96,7 +102,7 @@ pub fn refined(
     }
     let before = summary(mesh).ok_or(RefineError::Empty)?;
     // Those that are far beyond the bound would fill the memory before they are counted.
-    if estimated_elements(mesh, size) > 4.0 * options.most as f64 {
+    if estimated(mesh, size) > FAR_BEYOND * options.most as f64 {
         return Err(RefineError::TooMany(options.most));
     }
     let mut bisection = Bisection::new(mesh, same_places(mesh), size, options.most)?;
@@ -104,7 +110,7 @@ pub fn refined(
     bisection.run()?;
     let mut fine = if is_done { mesh.clone() } else { assembled(mesh, bisection) };
     let moved = rows::broken_up(&mut fine, size, options.seed);
-    let count = |mesh: &Mesh| if free::is_plane(mesh) { mesh.triangles.len() } else { mesh.tetrahedra.len() };
+    let count = |mesh: &Mesh| if is_plane(mesh) { mesh.triangles.len() } else { mesh.tetrahedra.len() };
     let asks = |at: Vec3| size(at) < f64::INFINITY;
     let [longest, _] = edges_within(mesh, &asks).ok_or(RefineError::Nowhere)?;
     let [after, mean] = edges_within(&fine, &asks).ok_or(RefineError::Nowhere)?;
@@ -118,8 +124,14 @@ pub fn refined(
     })
 }
 
-/// About how many elements [`refined`] makes; a third more or less.
-pub fn estimated_elements(mesh: &Mesh, size: &dyn Fn(Vec3) -> f64) -> f64 {
+/// About how much memory [`refined`] takes [bytes]; none where it refuses to make so many elements.
+pub fn bytes_to_refine(mesh: &Mesh, size: &dyn Fn(Vec3) -> f64) -> u64 {
+    let count = estimated(mesh, size);
+    if count > FAR_BEYOND * MOST as f64 { 0 } else { (OF_ELEMENT * count) as u64 }
+}
+
+/// About how many elements come of a mesh; a third more or less.
+fn estimated(mesh: &Mesh, size: &dyn Fn(Vec3) -> f64) -> f64 {
     fn parts<const N: usize>(corners: [Vec3; N], whole: f64, size: &dyn Fn(Vec3) -> f64) -> f64 {
         let middle = corners.iter().sum::<Vec3>() / N as f64;
         let places = corners.iter().map(|corner| 0.5 * (corner + middle)).chain([middle]);
@@ -132,7 +144,7 @@ pub fn estimated_elements(mesh: &Mesh, size: &dyn Fn(Vec3) -> f64) -> f64 {
         places.map(of).sum::<f64>() / (N + 1) as f64
     }
     let at = |node: u32| mesh.nodes[node as usize];
-    if free::is_plane(mesh) {
+    if is_plane(mesh) {
         let all = mesh.triangles.iter().map(|nodes| nodes.map(at));
         return all.map(|corners| parts(corners, area_vector(corners).norm(), size)).sum();
     }
@@ -141,7 +153,7 @@ pub fn estimated_elements(mesh: &Mesh, size: &dyn Fn(Vec3) -> f64) -> f64 {
 }
 
 fn summary(mesh: &Mesh) -> Option<Summary> {
-    if free::is_plane(mesh) {
+    if is_plane(mesh) {
         summarize_triangles(&mesh.nodes, &mesh.triangles)
     } else {
         summarize_tetrahedra(&mesh.nodes, &mesh.tetrahedra)
@@ -156,7 +168,7 @@ pub fn longest_edge(mesh: &Mesh, holds: &(dyn Fn(Vec3) -> bool + Sync)) -> Optio
 /// The longest and the mean of these edges.
 fn edges_within(mesh: &Mesh, holds: &(dyn Fn(Vec3) -> bool + Sync)) -> Option<[f64; 2]> {
     let at = |node: u32| mesh.nodes[node as usize];
-    let edges = if free::is_plane(mesh) {
+    let edges = if is_plane(mesh) {
         edges_of_triangles(&mesh.triangles).nodes
     } else {
         edges_of_tetrahedra(&mesh.tetrahedra).nodes
@@ -175,7 +187,7 @@ fn edges_within(mesh: &Mesh, holds: &(dyn Fn(Vec3) -> bool + Sync)) -> Option<[f
         let lengths = |a: &Vec3| corners.map(|b| (b - a).norm());
         holds(middle).then(|| corners.iter().flat_map(lengths).fold(0.0, f64::max))
     }
-    let middles: Vec<Option<f64>> = if free::is_plane(mesh) {
+    let middles: Vec<Option<f64>> = if is_plane(mesh) {
         mesh.triangles.par_iter().map(|nodes| within(nodes.map(at), holds)).collect()
     } else {
         mesh.tetrahedra.par_iter().map(|nodes| within(nodes.map(at), holds)).collect()

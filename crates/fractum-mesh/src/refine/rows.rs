@@ -3,10 +3,9 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
-use super::free::{around_nodes, free_nodes, groups_of_elements, is_plane};
 use crate::Mesh;
+use crate::free::{WORST_SHAPE, around_nodes, free_nodes, groups_of_elements, is_plane};
 use crate::generate::unit_interval;
-use crate::neighbour::WORST_SHAPE;
 use crate::quality::{area_vector, signed_volume};
 use crate::topology::{NO_ELEMENT, TETRAHEDRON_EDGES, TETRAHEDRON_FACETS, sides_of_triangles};
 

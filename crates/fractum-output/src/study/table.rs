@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use super::compare::{Family, Varies, Verdict};
 use super::run::{End, Measured, Run};
+use crate::accuracy::{Accuracy, Pass};
 use crate::expectation::{Comparison, Expectation};
 use crate::history::quoted;
 use crate::number::{percent, push_shortest, quantity, significant};
@@ -44,6 +45,35 @@ impl Table {
         self.rows.iter().for_each(|row| line(row));
         text
     }
+}
+
+/// The passes of a case that asked for an accuracy.
+pub fn of_passes(accuracy: &Accuracy) -> Table {
+    let peak = format!("peak of {}", accuracy.load);
+    let header = ["pass", "size", "size/l", "elements", "time", &peak, "end"].map(String::from).to_vec();
+    let unit = accuracy.probes.get(&accuracy.load).map_or("", |estimate| estimate.unit.as_str());
+    let row = |pass: &Pass| {
+        vec![
+            pass.name.clone(),
+            quantity(pass.size, "m"),
+            significant(pass.size / accuracy.length, 3),
+            pass.elements.to_string(),
+            format!("{} s", significant(pass.wall, 3)),
+            pass.peaks.get(&accuracy.load).map_or_else(String::new, |peak| quantity(*peak, unit)),
+            if pass.left_out.is_empty() { pass.end.clone() } else { pass.left_out.clone() },
+        ]
+    };
+    Table { title: String::new(), header, rows: accuracy.passes.iter().map(row).collect() }
+}
+
+/// Its passes, and the peaks of its probes with their error bars, as text.
+pub fn accuracy(accuracy: &Accuracy) -> String {
+    let mut text = of_passes(accuracy).to_markdown();
+    text.push('\n');
+    for (name, estimate) in &accuracy.probes {
+        let _ = writeln!(text, "- peak of {name}: {}", estimate.words());
+    }
+    text
 }
 
 /// Error and value of a reference, in one cell; `!` where it is missed.

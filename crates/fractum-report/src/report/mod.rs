@@ -1,5 +1,6 @@
 //! `report.html`: a run on one page, for the eye and for the printer. It needs no other file and no script.
 
+mod accuracy;
 mod charts;
 mod figure;
 mod modes;
@@ -132,6 +133,7 @@ pub fn to_html(data: &ReportData) -> String {
                 (heading(data))
                 (warnings(&data.summary.warnings))
                 (expectations(summary))
+                (accuracy::passes(summary))
                 (pictures(&data.pictures))
                 (strip(&data.pictures))
                 @if !figures.is_empty() {

@@ -1,17 +1,14 @@
 //! `fractum mesh info`, `fractum mesh joints`, `fractum mesh refine` and `fractum mesh convert`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Subcommand, ValueEnum};
+use clap::Subcommand;
 use fractum::{ExitCode, Failure, mesh_of_case, say};
-use fractum_case::model::part_files;
-use fractum_case::{read_case, refuse_endless};
-use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
+use fractum_case::read_case;
 
+use super::mesh_file::{Target, read, write};
 use super::mesh_info::{self, Demand};
 use super::mesh_refine::{self, RefineArguments};
-use super::mesh_vtu;
 
 #[derive(Subcommand)]
 pub(crate) enum MeshCommand {
@@ -55,25 +52,6 @@ pub(crate) enum MeshCommand {
     },
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(crate) enum Target {
-    Msh22,
-    Msh22Binary,
-    Msh41,
-    Msh41Binary,
-}
-
-impl From<Target> for MshFormat {
-    fn from(target: Target) -> Self {
-        match target {
-            Target::Msh22 => MshFormat::V2_2Ascii,
-            Target::Msh22Binary => MshFormat::V2_2Binary,
-            Target::Msh41 => MshFormat::V4_1Ascii,
-            Target::Msh41Binary => MshFormat::V4_1Binary,
-        }
-    }
-}
-
 /// - `json`: the information as one JSON value
 pub(crate) fn execute(command: MeshCommand, json: bool) -> Result<ExitCode, Failure> {
     match command {
@@ -106,42 +84,4 @@ fn joints(case: &Path, output: Option<&Path>, set: &[(String, String)]) -> Resul
     warnings.iter().for_each(|warning| say!("{warning}"));
     let Some(output) = output else { return Ok(()) };
     write(|| Ok(mesh), output, None)
-}
-
-/// Writes a mesh in the format that the ending of a file says.
-pub(super) fn write(
-    mesh: impl FnOnce() -> Result<Mesh, Failure>,
-    output: &Path,
-    to: Option<Target>,
-) -> Result<(), Failure> {
-    let wrong = |text: &str| Err(Failure::input(format!("{}: {text}", output.display())));
-    let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    match (ending.as_str(), to) {
-        ("msh", to) => {
-            let mesh = mesh()?;
-            let format = to.unwrap_or(Target::Msh41Binary).into();
-            Ok(fractum_output::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
-        }
-        ("vtu", None) => Ok(fractum_output::atomic::write(output, &mesh_vtu::bytes(&mesh()?)?)?),
-        ("vtu", Some(_)) => wrong("--to is for files that end in .msh; leave it out"),
-        _ => wrong(
-            "ends in neither .msh nor .vtu, the formats that are written; for others write a .msh with --to msh22, then: \
-             meshio convert part.msh part.ENDING",
-        ),
-    }
-}
-
-/// - `parts`: how many files it is in, where that is not one
-fn read(file: &Path, parts: Option<u32>) -> Result<Mesh, Failure> {
-    let Some(parts) = parts else { return read_one(file) };
-    let files = part_files(file, parts as usize);
-    let meshes = files.iter().map(|file| read_one(file)).collect::<Result<Vec<_>, _>>()?;
-    joined(&meshes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
-}
-
-pub(super) fn read_one(file: &Path) -> Result<Mesh, Failure> {
-    refuse_endless(file).map_err(|error| Failure::input(format!("{} {error}", file.display())))?;
-    let bytes =
-        fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
-    read_mesh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }

@@ -6,11 +6,11 @@ use clap::Args;
 use fractum::{Failure, mesh_of_case, say};
 use fractum_case::build::{refine_remedy, refine_told};
 use fractum_case::{Dimension, parse_condition, parse_quantity, read_case};
-use fractum_mesh::{RefineOptions, Vec3, longest_edge, refined};
+use fractum_mesh::{RefineOptions, Vec3, bytes_to_refine, longest_edge, refined};
 use fractum_output::memory;
 use fractum_output::number::quantity;
 
-use super::mesh::{read_one, write};
+use super::mesh_file::{read_one, write};
 
 /// What becomes smaller, and where.
 #[derive(Args)]
@@ -96,7 +96,7 @@ fn of_mesh(arguments: &RefineArguments) -> Result<(), Failure> {
         say!("warning: the longest edge there is {longest}: nothing to refine; a smaller --size does more");
     }
     let size = |at: Vec3| if holds(at) { size / unit } else { f64::INFINITY };
-    memory::require((400.0 * fractum_mesh::estimated_elements(&mesh, &size)) as u64, "refining the mesh".to_owned())?;
+    memory::require(bytes_to_refine(&mesh, &size), "refining the mesh".to_owned())?;
     let seed = |_: Vec3| (!keep_rows).then_some(*seed);
     let made = refined(&mesh, &size, RefineOptions { seed: &seed, ..RefineOptions::default() });
     let made = made.map_err(|error| wrong(file, &format!("{error}; {}", refine_remedy(&error))))?;

@@ -8,6 +8,7 @@ mod lab_break;
 mod lab_pictures;
 mod manual;
 mod mesh;
+mod mesh_file;
 mod mesh_info;
 mod mesh_refine;
 mod mesh_vtu;
@@ -278,6 +279,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
         quiet: run.quiet || !leads,
         strict: run.strict,
         cache: cache(),
+        pass: None,
     };
     let Outcome { summary, folder, load } = fractum::run_shared(&run.case, &options, ranks)?;
     if !leads {
@@ -306,6 +308,9 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
         }
         if let Some((name, probe)) = load.as_ref().and_then(|name| summary.probes.get_key_value(name)) {
             say!("{:<28} {}", "peak", peak_text(name, probe, summary.time.at_rest));
+        }
+        if let Some(accuracy) = &summary.accuracy {
+            say!("\n{}", fractum_output::study::table::accuracy(accuracy));
         }
         say!("{:<28} {}", "end", summary.time.reason);
         say!("results in {}", folder.display());

@@ -55,6 +55,7 @@ pub(crate) fn run(arguments: ModesArguments) -> Result<ExitCode, Failure> {
         quiet,
         strict: false,
         cache: cache(),
+        pass: None,
     };
     let Outcome { summary, folder, .. } = fractum::run(&case, &options)?;
     let Some(found) = &summary.modes else { return Ok(ExitCode::Interrupted) };

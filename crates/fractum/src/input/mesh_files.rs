@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use fractum_case::build::{
-    SolidDivision, cannot_divide, cut_mesh, cut_network, divide, refine_mesh, refined_count, replicated_bodies,
+    SolidDivision, cannot_divide, cut_mesh, cut_network, divide, refine_bytes, refine_mesh, replicated_bodies,
 };
 use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
@@ -171,9 +171,8 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Fa
         mesh = scrambled(&mesh, share, seed);
     }
     if !source.refine.is_empty() {
-        // What an element takes while it is cut, with its nodes, edges and places in lists.
-        let bytes = 400.0 * refined_count(&source.refine, &mesh) * processes.here as f64;
-        memory::require(bytes as u64, "refining the mesh (mesh.refine)".to_owned())?;
+        let bytes = refine_bytes(&source.refine, &mesh) * processes.here as u64;
+        memory::require(bytes, "refining the mesh (mesh.refine)".to_owned())?;
         warnings.extend(refine_mesh(&source.refine, &mut mesh).map_err(Failure::Input)?);
     }
     for _ in 0..source.halvings {

@@ -148,9 +148,18 @@ fn add(hash: &RefCell<Xxh3>, part: &impl Serialize) {
 /// Holds a value of the summary against its reference.
 pub(crate) fn expectation(expect: &Expect, summary: &Summary) -> Expectation {
     let name = &expect.quantity.value;
+    let estimates = summary.accuracy.as_ref().map(|accuracy| &accuracy.probes);
     let value = match summary.probes.get(name) {
+        // A probe that is one number has the estimate of it, where there is one.
+        Some(probe) if probe.time_of_max.is_nan() => {
+            estimates.and_then(|all| all.get(name)).map_or(probe.r#final, |estimate| estimate.value)
+        }
         Some(probe) => probe.r#final,
-        None => summary.number(name),
+        None => {
+            let of_peak = name.strip_prefix("probes.").and_then(|name| name.strip_suffix(".max"));
+            let estimate = of_peak.and_then(|name| estimates?.get(name)).filter(|estimate| estimate.value > 0.0);
+            estimate.map_or_else(|| summary.number(name), |estimate| estimate.value)
+        }
     };
     Expectation::hold(name, &expect.unit, value, expect.bound, &expect.source)
 }

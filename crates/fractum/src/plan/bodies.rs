@@ -6,7 +6,8 @@ use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, Solid
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{
-    DamageLaw, EXCESS_OF_PEAK, ElementKind, Formulation, Kinematics, LengthReport, Plane, motion, neighbours,
+    DamageLaw, EXCESS_OF_PEAK, ElementKind, Formulation, Kinematics, LengthReport, Plane, crack_scale, motion,
+    neighbours,
 };
 use fractum_math::elementary::cbrt;
 use fractum_output::number::quantity;
@@ -236,7 +237,7 @@ impl Plan {
                 format!("length b of the phase field at {:.1} % of the longest possible", 100.0 * largest_ratio)
             } else {
                 let extent = body.smallest_extent(&scene.solid.reference);
-                let [excess, most] = EXCESS_OF_PEAK.map(|factor| 100.0 * factor * size / zone.min(extent));
+                let [excess, most] = EXCESS_OF_PEAK.map(|factor| 100.0 * factor * size / crack_scale(zone, extent));
                 let late = match body.formulation {
                     Formulation::Smoothed => format!("cracks from notches run some {excess:.1} % late"),
                     Formulation::Standard => format!("loads of cracks from notches are off by {most:.1} % at most"),

@@ -20,7 +20,7 @@ pub(super) struct Messages {
     pub(super) event: Option<String>,
     /// Whether a warning ends the run.
     pub(super) strict: bool,
-    /// Another rank speaks.
+    /// Another rank speaks, or all passes together.
     silent: bool,
 }
 
@@ -28,6 +28,7 @@ impl Messages {
     /// - `silent`: nothing at all on the terminal, since another rank speaks
     pub(super) fn new(log: RunLog, options: &Options, silent: bool) -> Self {
         let progress = Progress::on_stderr(options.quiet || silent);
+        let silent = silent || options.is_later_pass();
         Messages { progress, log, warnings: Vec::new(), before: 0, event: None, strict: options.strict, silent }
     }
 

@@ -50,7 +50,7 @@ impl Simulation {
         let started = Instant::now();
         let source = || {
             // Before anything is prepared, which may take long.
-            folder_of(path, options)?;
+            results_folder(path, options)?;
             ranks.check(path, &options.overrides)?;
             read(path, &options.overrides, ranks.processes())
         };
@@ -80,8 +80,14 @@ impl Simulation {
         started: Instant,
         ranks: Ranks,
     ) -> Result<Self, Failure> {
+        if let Some(asked) = input.case.asked_accuracy() {
+            let note =
+                Diagnostic::error(&asked.share.place, ": it takes several runs, which are not driven step by step");
+            let note = note.remedy("run the case as a whole, or set it to 0");
+            return Err(Failure::Input(Diagnostics(vec![note])));
+        }
         let ranks = Arc::new(ranks);
-        let results = folder_of(path, options)?;
+        let results = results_folder(path, options)?;
         let find = || {
             let identity = identity(&input);
             options.resume.then(|| find_checkpoint(&results, &identity)).transpose()
@@ -121,7 +127,7 @@ impl Simulation {
         started: Instant,
         ranks: Arc<Ranks>,
     ) -> Result<Self, Failure> {
-        let results = folder_of(path, options)?;
+        let results = results_folder(path, options)?;
         let folder = ranks.folder(&results);
         let identity = identity(&input);
         let plan = Plan::new(&input);
@@ -133,7 +139,7 @@ impl Simulation {
             origin: origin(&case, mesh_hash, options, &folder),
             plan,
         };
-        if !options.quiet {
+        if !options.quiet && !options.is_later_pass() {
             tell_plan(&about.plan, goes_on, &folder);
         }
         // Prepared before anything is put back: a resumed run solves the same systems in the same order.
@@ -301,7 +307,7 @@ fn put_back(
 ///
 /// # Errors
 /// [`Failure::Input`] where it holds results or a state that the run would replace unasked.
-fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
+pub(crate) fn results_folder(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
     let folder = options.output.clone().unwrap_or_else(|| default_folder(case));
     if options.resume || options.overwrite {
         return Ok(folder);
@@ -315,10 +321,30 @@ fn folder_of(case: &Path, options: &Options) -> Result<PathBuf, Failure> {
     )))
 }
 
+/// Folder of the passes of a case that asks for an accuracy, in that of its results.
+pub(crate) const PASSES: &str = "passes";
+
 /// Whether a folder holds results of a run, or a state to go on from.
 fn holds_results(folder: &Path) -> bool {
     let results = ["summary.json", "history.csv"].iter().any(|name| folder.join(name).is_file());
-    results || checkpoint::is_there(&folder.join("checkpoint"))
+    results || folder.join(PASSES).is_dir() || checkpoint::is_there(&folder.join("checkpoint"))
+}
+
+/// Makes the results folder without the results of an earlier run, and opens its log.
+///
+/// # Errors
+/// [`Failure::Write`].
+pub(crate) fn begin_results(folder: &Path) -> Result<RunLog, Failure> {
+    create_folder(folder)?;
+    let path = folder.join("run.log");
+    // A run that was killed early has left no more than its log and some pictures and frames.
+    let held = path.is_file() || holds_results(folder);
+    // The log is locked first: the results of a run under way stay as they are.
+    let log = RunLog::create(&path)?;
+    if held {
+        discard_results(folder)?;
+    }
+    Ok(log)
 }
 
 /// Makes the results folder and opens its log.
@@ -331,18 +357,17 @@ fn open_folder(folder: &Path, anew: bool) -> Result<RunLog, Failure> {
     if !anew {
         return Ok(RunLog::resume(&path)?);
     }
-    // A run that was killed early has left no more than its log and some pictures and frames.
-    let held = path.is_file() || holds_results(folder);
-    // The log is locked first: the results of a run under way stay as they are.
-    let log = RunLog::create(&path)?;
-    if held {
-        discard_results(folder)?;
+    let log = begin_results(folder)?;
+    let passes = folder.join(PASSES);
+    if passes.is_dir() {
+        std::fs::remove_dir_all(&passes).map_err(|error| WriteError::new(&passes, error))?;
     }
     Ok(log)
 }
 
 /// Files of a run, beside its frames, its pictures, its states and the text of its case.
-const RESULTS: [&str; 13] = [
+const RESULTS: [&str; 14] = [
+    "accuracy.md",
     "summary.json",
     "history.csv",
     "fields.pvd",

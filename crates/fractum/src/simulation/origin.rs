@@ -73,7 +73,7 @@ const MIXED: &str = "mixed";
 ///
 /// # Errors
 /// [`Failure::Write`].
-pub(super) fn keep_case(case: &Case, results: &Path, is_new: bool) -> Result<(), Failure> {
+pub(crate) fn keep_case(case: &Case, results: &Path, is_new: bool) -> Result<(), Failure> {
     let hash = hash_text(case.hash());
     let is_own = is_new || kept_hash(results).as_ref() == Some(&hash);
     let folder = results.join(INPUT);

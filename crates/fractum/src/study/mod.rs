@@ -3,23 +3,25 @@
 //! Every run has a folder of its own; one that has finished there is not run again, and one that was interrupted goes on.
 //! Tables and pages are made from what has finished.
 
-mod one;
-
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use fractum_case::study::plan::Study;
+use fractum_case::study::quantity::{Quantity, of_probes};
 use fractum_output::atomic;
+use fractum_output::expectation::Expectation;
 use fractum_output::number::{percent, significant};
 use fractum_output::study::compare::{Family, families};
-use fractum_output::study::run::{End, Planned, Run};
+use fractum_output::study::run::{End, Measured, Planned, Run};
 use fractum_output::study::{list, table};
-use fractum_output::summary::Status;
+use fractum_output::summary::{Status, Summary};
 
 use crate::error::Failure;
+use crate::kept::{self, program};
 use crate::process::interrupt::{UnderWay, is_interrupted};
+use crate::run::run_measured;
 use crate::simulation::Options;
 use crate::{report, tell};
 
@@ -90,7 +92,8 @@ pub fn find<'a>(runs: &'a [Planned], wanted: &str) -> Result<&'a Planned, Failur
 /// As [`crate::run`].
 pub fn run_one(planned: &Planned, folders: &Folders, settings: &Settings) -> Result<Status, Failure> {
     let results = folders.results();
-    let (status, kept) = one::run_one(planned, &results, &settings.options, settings.anew, program()?)?;
+    let (status, kept) =
+        kept::run_one(planned, &results, &settings.options, settings.anew, (program()?, run_measured))?;
     if kept {
         tell!("run {} has finished before: {}", planned.name, results.join(&planned.name).display());
     }
@@ -113,13 +116,13 @@ pub fn run_all(runs: &[Planned], folders: &Folders, settings: &Settings) -> Resu
         while !is_interrupted() {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(planned) = unlike.get(index) else { return };
-            match one::run_one(planned, &results, &settings.options, settings.anew, program) {
-                Err(failure) if !one::is_of_case(&failure) => {
+            match kept::run_one(planned, &results, &settings.options, settings.anew, (program, run_measured)) {
+                Err(failure) if !kept::is_of_case(&failure) => {
                     // A worker that panicked has left its lock poisoned, and the value as it was.
                     *wrong.lock().unwrap_or_else(std::sync::PoisonError::into_inner) = Some(failure);
                     return;
                 }
-                _ => show(&one::found(planned, &results, &folders.runs), index, unlike.len()),
+                _ => show(&kept::found(planned, &results, &folders.runs), index, unlike.len()),
             }
         }
     };
@@ -139,7 +142,7 @@ pub fn run_all(runs: &[Planned], folders: &Folders, settings: &Settings) -> Resu
 /// What came of all runs, from their folders.
 pub fn found(runs: &[Planned], folders: &Folders) -> Vec<Run> {
     let results = folders.results();
-    runs.iter().map(|planned| one::found(planned, &results, &folders.runs)).collect()
+    runs.iter().map(|planned| kept::found(planned, &results, &folders.runs)).collect()
 }
 
 /// Compares what came of all runs: writes the tables and the page, and tells them. The runs.
@@ -150,7 +153,7 @@ pub fn found(runs: &[Planned], folders: &Folders) -> Vec<Run> {
 /// [`Failure::Write`]; [`Failure::Input`] for a quantity that no run knows.
 pub fn collect(study: &Study, folders: &Folders, table: Option<&Path>) -> Result<(Vec<Run>, String), Failure> {
     let mut runs = found(&study.runs, folders);
-    one::compare(&mut runs, &study.compare)?;
+    compare(&mut runs, &study.compare)?;
     let families: Vec<Family<'_>> = families(&runs);
     let within = study.within;
     let file = |name: &str| folders.tables.join(name);
@@ -172,14 +175,6 @@ pub fn collect(study: &Study, folders: &Folders, table: Option<&Path>) -> Result
     Ok((runs, text))
 }
 
-/// Hash of this program, by which what another build has found is told from its own results.
-fn program() -> Result<u128, Failure> {
-    let read = std::env::current_exe().and_then(std::fs::read);
-    let bytes =
-        read.map_err(|error| Failure::input(format!("this program cannot be read, to tell its results: {error}")))?;
-    Ok(xxhash_rust::xxh3::xxh3_128(&bytes))
-}
-
 /// A line of progress.
 fn show(run: &Run, index: usize, of: usize) {
     let words: Vec<&str> = run.planned.coordinates().map(|(_, value)| value).collect();
@@ -196,4 +191,30 @@ fn show(run: &Run, index: usize, of: usize) {
 
 fn lines(lines: &[String]) -> String {
     lines.iter().map(|line| format!("- {line}\n")).collect()
+}
+
+/// Adds what finished runs are compared by: the wishes, or for runs without references their probes.
+///
+/// # Errors
+/// A wish that no run can meet.
+fn compare(runs: &mut [Run], wishes: &[Quantity]) -> Result<(), Failure> {
+    let mut finished: Vec<(&mut Measured, &Summary)> = Vec::new();
+    for run in runs {
+        if let (End::Finished(measured), Some(summary)) = (&mut run.end, &run.summary) {
+            finished.push((&mut **measured, summary));
+        }
+    }
+    for wish in wishes {
+        let found: Vec<Result<Expectation, String>> = finished.iter().map(|(_, summary)| wish.of(summary)).collect();
+        if let Some(Err(why)) = found.first().filter(|_| found.iter().all(Result::is_err)) {
+            return Err(Failure::input(why.clone()));
+        }
+        for ((measured, _), line) in finished.iter_mut().zip(found) {
+            measured.expect.extend(line);
+        }
+    }
+    for (measured, summary) in finished.into_iter().filter(|(measured, _)| measured.expect.is_empty()) {
+        measured.expect = of_probes(summary);
+    }
+    Ok(())
 }

@@ -1,11 +1,9 @@
-//! One run of a list: it is done unless it has finished before, goes on from its last state, and is found again.
+//! A run of many: it is done unless it has finished before, goes on from its last state, and is found again.
 
 use std::fs;
 use std::path::Path;
 
 use fractum_case::read_case;
-use fractum_case::study::quantity::{Quantity, of_probes};
-use fractum_output::expectation::Expectation;
 use fractum_output::study::run::{End, Measured, Planned, Run};
 use fractum_output::summary::{Status, Summary, hash_text};
 use fractum_output::{atomic, checkpoint};
@@ -13,8 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{ExitCode, Failure};
 use crate::input::mesh_hash;
-use crate::run::{Measure, run_measured};
-use crate::simulation::{Options, kept_hash};
+use crate::simulation::{Measure, Options, Outcome, kept_hash};
 use crate::tell;
 
 /// File in the folder of a run with what its summary does not tell.
@@ -59,25 +56,37 @@ enum Ended {
     Refused(String),
 }
 
+/// Runs a case from its file.
+pub(crate) type Runner = fn(&Path, &Options) -> Result<(Outcome, Measure), Failure>;
+
+/// Hash of this program, by which what another build has found is told from its own results.
+pub(crate) fn program() -> Result<u128, Failure> {
+    let read = std::env::current_exe().and_then(fs::read);
+    let bytes =
+        read.map_err(|error| Failure::input(format!("this program cannot be read, to tell its results: {error}")))?;
+    Ok(xxhash_rust::xxh3::xxh3_128(&bytes))
+}
+
 /// Does a run, unless it has finished before; goes on from its last state, if there is one of this case, mesh and program.
 /// Its end, and whether that is of before.
 ///
 /// - `options`: their `output` is replaced by the folder of the run, overrides and `resume` by those of the run
 /// - `anew`: from the start in any case
+/// - `program`: its hash; `runner`: what runs the case
 ///
 /// # Errors
 /// As [`crate::run`]; what the case is to blame for is kept beside the results.
-pub(super) fn run_one(
+pub(crate) fn run_one(
     planned: &Planned,
     results: &Path,
     options: &Options,
     anew: bool,
-    program: u128,
+    (program, runner): (u128, Runner),
 ) -> Result<(Status, bool), Failure> {
     let place = results.join(&planned.name);
     let mut record = Record::default();
     record.identity.program = hash_text(program);
-    let ended = done(&mut record, planned, &place, options, anew);
+    let ended = done(&mut record, planned, &place, options, (anew, runner));
     match &ended {
         Ok((_, true)) | Err(Failure::StoppedBefore(_)) => return ended,
         Ok((Status::Interrupted, _)) => {}
@@ -91,7 +100,7 @@ pub(super) fn run_one(
 }
 
 /// Whether a failure is that of one run, and others may do better.
-pub(super) fn is_of_case(failure: &Failure) -> bool {
+pub(crate) fn is_of_case(failure: &Failure) -> bool {
     matches!(failure, Failure::Input(_) | Failure::Stopped { .. } | Failure::StoppedBefore(_) | Failure::Memory(_))
 }
 
@@ -100,7 +109,7 @@ fn done(
     planned: &Planned,
     place: &Path,
     options: &Options,
-    anew: bool,
+    (anew, runner): (bool, Runner),
 ) -> Result<(Status, bool), Failure> {
     let case = read_case(&planned.case, &planned.overrides)?;
     let hash = hash_text(case.hash());
@@ -129,10 +138,10 @@ fn done(
     };
     // What is killed goes on from its last state too, and its processor time is not known.
     record.write(place)?;
-    let (outcome, Measure { processor, size, particles }) = match run_measured(&planned.case, &options) {
+    let (outcome, Measure { processor, size, particles }) = match runner(&planned.case, &options) {
         Err(failure @ Failure::Checkpoint(_)) if resume && failure.exit_code() == ExitCode::Input => {
             tell!("{failure}; run {} starts anew", planned.name);
-            run_measured(&planned.case, &Options { resume: false, overwrite: true, ..options })
+            runner(&planned.case, &Options { resume: false, overwrite: true, ..options })
         }
         ended => ended,
     }?;
@@ -156,7 +165,7 @@ impl Record {
 /// What the folder of a run tells of it, as far as it is of its case as that is now.
 ///
 /// - `from`: the folder of all results, from that of the tables
-pub(super) fn found(planned: &Planned, results: &Path, from: &Path) -> Run {
+pub(crate) fn found(planned: &Planned, results: &Path, from: &Path) -> Run {
     let place = results.join(&planned.name);
     let hash = read_case(&planned.case, &planned.overrides).ok().map(|case| hash_text(case.hash()));
     let is_own = |found: &str| hash.as_ref().is_none_or(|own| own == found);
@@ -188,30 +197,4 @@ fn measured(record: &Record, summary: &Summary) -> Measured {
         processor: record.processor,
         expect: summary.expect.clone(),
     }
-}
-
-/// Adds what finished runs are compared by: the wishes, or for runs without references their probes.
-///
-/// # Errors
-/// A wish that no run can meet.
-pub(super) fn compare(runs: &mut [Run], wishes: &[Quantity]) -> Result<(), Failure> {
-    let mut finished: Vec<(&mut Measured, &Summary)> = Vec::new();
-    for run in runs {
-        if let (End::Finished(measured), Some(summary)) = (&mut run.end, &run.summary) {
-            finished.push((&mut **measured, summary));
-        }
-    }
-    for wish in wishes {
-        let found: Vec<Result<Expectation, String>> = finished.iter().map(|(_, summary)| wish.of(summary)).collect();
-        if let Some(Err(why)) = found.first().filter(|_| found.iter().all(Result::is_err)) {
-            return Err(Failure::input(why.clone()));
-        }
-        for ((measured, _), line) in finished.iter_mut().zip(found) {
-            measured.expect.extend(line);
-        }
-    }
-    for (measured, summary) in finished.into_iter().filter(|(measured, _)| measured.expect.is_empty()) {
-        measured.expect = of_probes(summary);
-    }
-    Ok(())
 }

@@ -5,6 +5,9 @@ use fractum_math::Ragged;
 use crate::Mesh;
 use crate::topology::{boundary_of_tetrahedra, boundary_of_triangles, elements_of_nodes};
 
+/// Smallest radius ratio (1 for an equilateral element) that a moved node may leave to an element, unless it was smaller before.
+pub(crate) const WORST_SHAPE: f64 = 0.3;
+
 /// Whether a mesh is one of plane elements alone.
 pub(crate) fn is_plane(mesh: &Mesh) -> bool {
     mesh.tetrahedra.is_empty()

@@ -1,0 +1,270 @@
+//! A case that asks for an accuracy: it runs on the mesh as it is, then on meshes that are finer where damage came, until the error bar of its load is as
+//! short as asked.
+//!
+//! Every pass is a run of its own in a folder of its own, which has its mesh; one that has finished is not run again, and one that was interrupted goes on.
+//! The results of the finest pass become those of the case, with the estimates beside them.
+
+mod publish;
+mod zone;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use fractum_case::model::{AskedAccuracy, WHOLE_MESH, load_of};
+use fractum_case::{Case, Diagnostic, Diagnostics};
+use fractum_mesh::{Mesh, MshFormat, RefineError, RefineOptions, refined, write_msh};
+use fractum_output::accuracy::{Estimate, OF_LOADS, OF_OTHERS, Pass, estimate};
+use fractum_output::atomic;
+use fractum_output::number::{grouped, quantity, significant};
+use fractum_output::study::run::Planned;
+use fractum_output::summary::{Status, Summary};
+
+use crate::error::Failure;
+use crate::input::mesh_of_case;
+use crate::kept;
+use crate::output::summary::status_text;
+use crate::process::ranks::Ranks;
+use crate::simulation::{Damaged, Measure, Options, Outcome, PASSES, results_folder, run_whole};
+use crate::tell;
+use zone::Zone;
+
+/// File of the mesh of a pass.
+const MESH: &str = "mesh.msh";
+
+/// Size of the elements of the first two meshes that are refined, over l, which every two passes halve: the excess is a line below it.
+const FIRST: f64 = 0.1;
+
+/// How many times smaller the elements of a pass may be than those of the passes before.
+const STEP: f64 = 4.0;
+
+/// Size of the elements that bisection makes, over the longest edge that it leaves.
+const SIZE_OF_EDGE: f64 = 0.6;
+
+/// Elements of a pass at most, so that a path in space ends within hours, and how many times those of the pass before they may be where they are many.
+const MOST: usize = 300_000;
+const GROWTH: usize = 6;
+const LITTLE: usize = 10_000;
+
+/// Passes, with that on the mesh of the user, before the first bar is believed.
+const LEAST: usize = 6;
+
+/// What is left of its peak where a pass that stopped itself has passed it.
+const PASSED: f64 = 0.98;
+
+/// The passes of a case.
+struct Passes<'a> {
+    case: &'a Case,
+    path: &'a Path,
+    options: &'a Options,
+    /// Folder of the passes.
+    folder: PathBuf,
+    /// Name of the probe of the load, and its unit.
+    load: (String, &'static str),
+    /// Done so far, with their summaries and where damage came.
+    done: Vec<(Pass, Summary, Damaged)>,
+}
+
+/// Runs a case that asks for an accuracy.
+///
+/// # Errors
+/// As [`crate::run`], of the first pass; what cannot be refined or written.
+pub(crate) fn run(
+    path: &Path,
+    case: &Case,
+    asked: &AskedAccuracy,
+    options: &Options,
+) -> Result<(Outcome, Measure), Failure> {
+    let results = &results_folder(path, options)?;
+    if options.resume && !results.join(PASSES).is_dir() {
+        let text = format!("{}: no passes to go on with; run without --resume", results.display());
+        return Err(Failure::input(text));
+    }
+    let Some((load, unit)) = load_of(&case.probes) else {
+        let note = Diagnostic::error(&asked.share.place, ": no probe measures a force or a moment".to_owned());
+        return Err(Failure::Input(Diagnostics(vec![note.remedy("add a probe of a reaction")])));
+    };
+    let load = (case.probes[load].name.value.clone(), unit);
+    let mut passes = Passes { case, path, options, folder: results.join(PASSES), load, done: Vec::new() };
+    let (base, _) = mesh_of_case(case)?;
+    passes.add("1-as-meshed", None)?;
+    passes.tell_last(asked);
+    while passes.goes_on(asked) {
+        let (mesh, name) = passes.mesh(&base, asked)?;
+        passes.add(&name, Some(&mesh))?;
+        passes.tell_last(asked);
+    }
+    let (finest, particles) = (passes.finest(), passes.done[0].1.counts.particles);
+    let measure = Measure { processor: None, size: passes.done[finest].0.size, particles };
+    Ok((publish::publish(&passes, finest, asked, results)?, measure))
+}
+
+impl Passes<'_> {
+    /// Whether another pass is to follow.
+    fn goes_on(&self, asked: &AskedAccuracy) -> bool {
+        let count = self.done.len();
+        let is_met = count >= LEAST && self.reached().is_some_and(|reached| reached <= asked.share.value);
+        let is_elastic = count == 1 && self.done[0].2.is_empty();
+        !is_met && !is_elastic && !self.is_interrupted() && count < asked.most_runs
+    }
+
+    fn is_interrupted(&self) -> bool {
+        self.done.last().is_some_and(|(_, summary, _)| summary.status == Status::Interrupted)
+    }
+
+    /// The pass with the smallest elements whose peaks count; the first where none does.
+    fn finest(&self) -> usize {
+        let counts = |index: &usize| self.done[*index].0.left_out.is_empty();
+        let size = |index: &usize| self.done[*index].0.size;
+        (1..self.done.len()).filter(counts).min_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0)
+    }
+
+    /// Does a pass, unless it has been done before.
+    ///
+    /// - `mesh`: file of its mesh; none for that of the case
+    fn add(&mut self, name: &str, mesh: Option<&Path>) -> Result<(), Failure> {
+        let mut overrides = self.options.overrides.clone();
+        if let Some(mesh) = mesh {
+            let file = std::path::absolute(mesh).unwrap_or_else(|_| mesh.to_owned());
+            let file = file.display().to_string().replace('\\', "/").replace('"', "\\\"");
+            overrides.push(("mesh".to_owned(), format!("{{ file = \"{file}\", unit = \"m\" }}")));
+        }
+        let key = if self.case.source.stage.is_empty() { "solver.accuracy" } else { "stages[*].solver.accuracy" };
+        overrides.push((key.to_owned(), "0".to_owned()));
+        let planned = Planned { name: name.to_owned(), case: self.path.to_owned(), overrides, ..Planned::default() };
+        let options = Options { pass: Some(self.done.len()), ..self.options.clone() };
+        let summary = summary_of(&planned, &self.folder, &options)?;
+        let damaged = Damaged::read(&self.folder.join(name));
+        let pass = self.pass(name, &summary, &damaged);
+        self.done.push((pass, summary, damaged));
+        Ok(())
+    }
+
+    fn pass(&self, name: &str, summary: &Summary, damaged: &Damaged) -> Pass {
+        let of_probe = |probe: &fractum_output::summary::Probe| {
+            if probe.min.abs() > probe.max.abs() { probe.min } else { probe.max }
+        };
+        let peaks: BTreeMap<String, f64> =
+            summary.probes.iter().map(|(name, probe)| (name.clone(), of_probe(probe))).collect();
+        let load = &self.load.0;
+        let (peak, end) = (peaks.get(load).copied().unwrap_or(f64::NAN), summary.probes.get(load));
+        let has_passed = end.is_some_and(|probe| probe.r#final.abs() < PASSED * peak.abs());
+        let left_out = match summary.status {
+            Status::Stopped if !has_passed => format!("stopped before its peak: {}", summary.time.reason),
+            _ if damaged.is_empty() => "no damage".to_owned(),
+            _ => String::new(),
+        };
+        Pass {
+            name: name.to_owned(),
+            size: damaged.size(),
+            elements: summary.counts.elements,
+            end: status_text(summary.status).to_owned(),
+            left_out,
+            wall: summary.wall.total,
+            peaks,
+        }
+    }
+
+    /// Length beside which elements are large or small [m]: the shortest that any pass has told.
+    fn length(&self) -> f64 {
+        self.done.iter().map(|(_, _, damaged)| damaged.length).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Passes whose peaks count: those on refined meshes.
+    fn counted(&self) -> impl Iterator<Item = &Pass> {
+        self.done.iter().skip(1).map(|(pass, _, _)| pass).filter(|pass| pass.left_out.is_empty())
+    }
+
+    /// Estimate of the peak of a probe.
+    fn estimate(&self, name: &str, unit: &str) -> Option<Estimate> {
+        let known = if unit == self.load.1 { OF_LOADS } else { OF_OTHERS };
+        let length = self.length();
+        let sizes: Vec<f64> = self.counted().map(|pass| pass.size / length).collect();
+        let peaks: Option<Vec<f64>> = self.counted().map(|pass| pass.peaks.get(name).copied()).collect();
+        let [value, half] = estimate(&sizes, &peaks?, known)?;
+        Some(Estimate { unit: unit.to_owned(), value, half })
+    }
+
+    /// Half of the bar of the load over the load.
+    fn reached(&self) -> Option<f64> {
+        let estimate = self.estimate(&self.load.0, self.load.1)?;
+        Some((estimate.half / estimate.value).abs())
+    }
+
+    /// Size of the elements of the next pass [m].
+    fn next_size(&self) -> f64 {
+        let sizes = || self.done.iter().map(|(pass, ..)| pass.size);
+        let first = self.done[0].0.size.min(FIRST * self.length());
+        // Around a crack that a very coarse mesh has found fine elements would be many.
+        let nearest = sizes().fold(f64::INFINITY, f64::min) / STEP;
+        let made = sizes().skip(1).filter(|size| *size < 1.5 * first).count();
+        nearest.max(first * 0.5f64.powi(made as i32 / 2))
+    }
+
+    /// Where elements of a size are wanted. Passes of such sizes tell more exactly where cracks run than coarser ones.
+    fn zone(&self, size: f64) -> Zone {
+        let all = || self.done.iter().map(|(_, _, damaged)| damaged).filter(|damaged| !damaged.is_empty());
+        let near: Vec<&Damaged> = all().filter(|damaged| damaged.size() < 2.5 * size).collect();
+        if near.is_empty() { Zone::around(all()) } else { Zone::around(near.into_iter()) }
+    }
+
+    /// File of the mesh of the next pass, and the name of the pass.
+    fn mesh(&self, base: &Mesh, asked: &AskedAccuracy) -> Result<(PathBuf, String), Failure> {
+        let number = self.done.len();
+        let seed = |_| Some(number as u64);
+        let mut size = self.next_size();
+        let last = self.done.last().map_or(0, |(pass, ..)| pass.elements as usize);
+        let most = (GROWTH * last).clamp(LITTLE, MOST).max(2 * base.element_count());
+        let mut mesh = loop {
+            let zone = self.zone(size);
+            let wanted = |at| if zone.contains(at) { size / SIZE_OF_EDGE } else { f64::INFINITY };
+            match refined(base, &wanted, RefineOptions { seed: &seed, most }) {
+                Ok(made) => break made.mesh,
+                // Another mesh of a size before it.
+                Err(RefineError::TooMany(_)) => size *= 2.0,
+                Err(error) => {
+                    let note = Diagnostic::error(&asked.share.place, format!(": {error}"));
+                    let note = note.remedy("set solver.accuracy to 0, and refine the mesh yourself (mesh.refine)");
+                    return Err(Failure::Input(Diagnostics(vec![note])));
+                }
+            }
+        };
+        mesh.groups.retain(|group| group.name != WHOLE_MESH);
+        let name = format!("{}-refined", number + 1);
+        let folder = self.folder.join(&name);
+        atomic::create_folder(&folder)?;
+        let file = folder.join(MESH);
+        atomic::write_with(&file, |out| write_msh(&mesh, MshFormat::V4_1Binary, out))?;
+        Ok((file, name))
+    }
+
+    /// A line on what the last pass came to.
+    fn tell_last(&self, asked: &AskedAccuracy) {
+        let Some((pass, _, _)) = self.done.last().filter(|_| !self.options.quiet) else { return };
+        let (load, unit) = &self.load;
+        let peak = pass.peaks.get(load).copied().unwrap_or(f64::NAN);
+        let estimate = self.estimate(load, unit).map(|estimate| format!("; so far {}", estimate.words()));
+        let end = if pass.left_out.is_empty() { String::new() } else { format!(" ({})", pass.left_out) };
+        tell!(
+            "pass {} of at most {}: {} elements, {} where damage came; peak of {load} {}{end} in {} s{}",
+            self.done.len(),
+            asked.most_runs,
+            grouped(&pass.elements.to_string()),
+            quantity(pass.size, "m"),
+            quantity(peak, unit),
+            significant(pass.wall, 3),
+            estimate.unwrap_or_default()
+        );
+    }
+}
+
+/// Does a pass; its summary, also where it stopped itself.
+fn summary_of(planned: &Planned, folder: &Path, options: &Options) -> Result<Summary, Failure> {
+    let runner = |path: &Path, options: &Options| run_whole(path, options, Ranks::alone());
+    match kept::run_one(planned, folder, options, options.overwrite, (kept::program()?, runner)) {
+        Ok(_) | Err(Failure::Stopped { .. } | Failure::StoppedBefore(_)) => {
+            let file = folder.join(&planned.name).join("summary.json");
+            Summary::read(&file).map_err(|error| Failure::input(error.to_string()))
+        }
+        Err(failure) => Err(failure),
+    }
+}
