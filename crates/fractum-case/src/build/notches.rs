@@ -100,6 +100,14 @@ mod tests {
 
     /// Whether the first of some bodies with damage has a notch.
     fn is_notched(nodes: &[Vec3], bodies: &[Vec<[u32; 4]>], shape: ElementKind, region: Option<Region>) -> bool {
+        // Nodes without elements have no mass.
+        let mut used: Vec<u32> = bodies.concat().concat();
+        used.sort_unstable();
+        used.dedup();
+        let number = |node: u32| used.binary_search(&node).unwrap() as u32;
+        let renumbered = |elements: &Vec<[u32; 4]>| elements.iter().map(|e| e.map(number)).collect::<Vec<_>>();
+        let bodies: Vec<Vec<[u32; 4]>> = bodies.iter().map(renumbered).collect();
+        let nodes: Vec<Vec3> = used.iter().map(|&node| nodes[node as usize]).collect();
         let body = |elements: &Vec<[u32; 4]>| {
             let mut body = Body::new("body", shape, elements.clone(), ELASTIC).smoothed();
             body = body.with_damage(DamageLaw::rankine(3e6, 100.0));
@@ -116,14 +124,14 @@ mod tests {
                 boundary_of_triangles(&triangles).iter().map(|e| [e.nodes[0], e.nodes[1], e.nodes[1]]).collect()
             }
         };
-        let solid = Solid::new(nodes.to_vec(), bodies.iter().map(body).collect()).unwrap();
+        let solid = Solid::new(nodes, bodies.iter().map(body).collect()).unwrap();
         Notches::of(&solid, &boundary).has(solid.body(0))
     }
 
     #[test]
     fn corners_and_slits_of_plates_are_notches() {
         for seed in [1, 2, 3] {
-            let mesh = structured_rectangle([8, 8], [0.8, 0.8], Some(Jitter { fraction: 0.2, seed }));
+            let mesh = structured_rectangle([8, 8], [0.8, 0.8], Some(Jitter { fraction: 0.15, seed }));
             let all: Vec<[u32; 4]> = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
             let middle = |e: &[u32; 4]| e[..3].iter().map(|&n| mesh.nodes[n as usize]).sum::<Vec3>() / 3.0;
             let [outside, inside] = [false, true].map(|within| {
