@@ -42,7 +42,7 @@ pub struct BedStrength {
 
 /// How much too high the load of a crack comes out under local damage, over the size of the elements at its tip in lengths of [`crack_scale`]: on average over
 /// irregular meshes, and at most (`cases/crack-size`, against exact cohesive cracks). Standard elements are off by as much either way.
-pub const EXCESS_OF_PEAK: [f64; 2] = [0.65, 1.8];
+pub const EXCESS_OF_PEAK: [f64; 2] = [0.65, 1.9];
 
 /// Length beside which elements at a crack are large or small: process zone and smallest extent of the body in series [m].
 pub fn crack_scale(process_zone: f64, extent: f64) -> f64 {

@@ -27,7 +27,9 @@ pub(super) fn passes(summary: &Summary) -> Markup {
                 tr { @for name in &table.header { th { (name) } } }
                 @for row in &table.rows { tr { @for cell in row { td { (cell) } } } }
             } }
-            p { "Size is that of the elements where damage came, l = " (quantity(found.length, "m")) " the process zone or the smallest extent of the body." }
+            p {
+                "Size is that of the elements where damage came; l = " (quantity(found.length, "m")) ": 1/l = 1/zone + 1/extent, of the process zone and the smallest extent of the body."
+            }
             @if let Some(chart) = chart(found) { div.grid { figure { (PreEscaped(chart.to_svg())) } } }
         }
     }

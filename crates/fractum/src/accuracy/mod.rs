@@ -229,6 +229,9 @@ impl Passes<'_> {
             }
         };
         mesh.groups.retain(|group| group.name != WHOLE_MESH);
+        // Lengths of a file are scaled as those of the case are.
+        let scale = self.case.source.verify.scale.unwrap_or(1.0);
+        mesh.nodes.iter_mut().for_each(|node| *node /= scale);
         let name = format!("{}-refined", number + 1);
         let folder = self.folder.join(&name);
         atomic::create_folder(&folder)?;
