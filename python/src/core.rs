@@ -143,7 +143,7 @@ impl Core {
             quiet,
             strict,
             cache: cache_of_user(),
-            pass: None,
+            ..Options::default()
         };
         let (pool, looks) = (pool(py, threads)?, pool(py, threads)?);
         let opened = watch(py, &pool, || {

@@ -49,7 +49,7 @@ fn run(
         quiet,
         strict,
         cache: cache_of_user(),
-        pass: None,
+        ..Options::default()
     };
     // A thread that waits for those of the run.
     let host = pool(py, Some(1))?;

@@ -25,7 +25,8 @@ pub struct Accuracy {
     pub reached: f64,
     /// Share of such bars that hold the truth [-].
     pub confidence: f64,
-    /// Length l beside which elements are large or small: process zone and smallest extent of the body in series [m].
+    /// Length l beside which elements are large or small: process zone and smallest extent of the body in series [m]; null without damage.
+    #[serde(with = "or_null")]
     pub length: f64,
     /// The runs, the mesh of the user first.
     pub passes: Vec<Pass>,
@@ -80,8 +81,8 @@ pub struct Known {
     pub weight: f64,
 }
 
-/// Of loads at which cracks run under local damage, from 370 runs on 22 plates and beams (`cases/crack-size/scenes.csv`). What is left is half of what a crack
-/// through irregular triangles takes above the fracture energy.
+/// Of loads at which cracks run under local damage, chosen on plates and beams of `cases/crack-size/scenes.csv`; `passes.py` holds the bars against all of them. What
+/// is left comes of the energy that a crack through irregular triangles takes above the fracture energy.
 pub const OF_LOADS: Known = Known { slope: [0.55, 0.35], left: [0.015, 0.012], scatter: 0.35, weight: 4.0 };
 
 /// Of other peaks, of which nothing is known.

@@ -51,8 +51,8 @@ name = "peak"
 expression = "max(load)"
 unit = "N"
 [[probes]]
-name = "way"
-displacement = { group = "top", along = "y" }
+name = "strength"
+expression = "max(load) / 0.0432 m^2"
 [[expect]]
 quantity = "peak"
 value = "55.46 kN"
@@ -131,6 +131,9 @@ fn peaks_get_error_bars_and_passes_are_kept() {
     assert!((value - 55.46e3).abs() < half && half < 0.1 * value, "{value} {half}");
     assert!((half / value - accuracy["reached"].as_f64().unwrap()).abs() < 1e-12);
     assert_eq!([of("peak", "value"), of("peak", "half")], [value, half]);
+    // In another unit it is the same load.
+    assert!((of("strength", "value") / value * 0.0432 - 1.0).abs() < 1e-12);
+    assert!((of("strength", "half") / half * 0.0432 - 1.0).abs() < 1e-12);
     let sizes: Vec<f64> =
         accuracy["passes"].as_array().unwrap().iter().map(|pass| pass["size"].as_f64().unwrap()).collect();
     assert!(sizes[3] < 0.7 * sizes[2] && sizes[1] < sizes[0], "{sizes:?}");
@@ -168,7 +171,26 @@ fn what_cannot_get_an_error_bar_is_told() {
     assert!(ended.stderr.contains("no damage came"), "{}", ended.stderr);
     assert!(summary(&place, "out")["warnings"].to_string().contains("\"accuracy\""));
     assert!(fs::read_to_string(place.path("out/run.log")).unwrap().contains("[accuracy]"));
-    let strict =
+    let strict = place.fractum(&["run", "case.toml", "-o", "strict", "--strict"]);
+    assert_eq!(strict.code, Some(2), "{}", strict.stderr);
+    let set = ["criterion=\"mohr-coulomb\"", "compressive_strength=\"300 MPa\"", "friction_angle=\"40 deg\""];
+    let set = set.map(|set| format!("materials.m.damage.{set}"));
+    let arguments = ["run", "case.toml", "-o", "other", "--set", &set[0], "--set", &set[1], "--set", &set[2]];
+    let other = place.fractum(&arguments);
+    assert!(other.stderr.contains("and this is another criterion than Rankine's"), "{}", other.stderr);
+    let wrong =
         place.fractum(&["run", "case.toml", "-o", "more", "--set", "solver.accuracy=\"1 %\"", "--set", "probes=[]"]);
-    assert_eq!(strict.code, Some(1), "{}", strict.stderr);
+    assert_eq!(wrong.code, Some(1), "{}", wrong.stderr);
+}
+
+#[test]
+fn a_load_that_grows_to_the_end_has_no_bar() {
+    let place = place(PLATE);
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--set", "solver.end=\"0.2 s\""]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("fewer than two of 4 passes have seen the load fall"), "{}", ended.stderr);
+    let accuracy = &summary(&place, "out")["accuracy"];
+    assert_eq!(accuracy["probes"], serde_json::json!({}));
+    assert_eq!(accuracy["reached"], Value::Null);
+    assert!(accuracy["passes"].to_string().contains("its load did not fall"));
 }

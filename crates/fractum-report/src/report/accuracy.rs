@@ -16,7 +16,7 @@ pub(super) fn passes(summary: &Summary) -> Markup {
         section {
             h2 { "Accuracy" }
             p {
-                "Peaks on an endlessly fine mesh, from the passes below; " (significant(10.0 * found.confidence, 2)) " of 10 such bars hold the truth. Asked for: "
+                "Peaks on an endlessly fine mesh, from the passes below; " (significant(10.0 * found.confidence, 2)) " of 10 bars of the load and of its multiples hold the truth, and others tell how the passes scatter. Asked for: "
                 (percent(found.asked)) " of " (found.load) ". The curves and pictures of this page are those of the finest pass."
             }
             div.scroll { table {

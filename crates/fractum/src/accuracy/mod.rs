@@ -10,14 +10,16 @@ mod zone;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use fractum_case::model::{AskedAccuracy, WHOLE_MESH, load_of};
+use fractum_case::model::{AskedAccuracy, Material, SolverKind, WHOLE_MESH, load_of};
 use fractum_case::{Case, Diagnostic, Diagnostics};
+use fractum_fem::CriterionKind;
 use fractum_mesh::{Mesh, MshFormat, RefineError, RefineOptions, refined, write_msh};
 use fractum_output::accuracy::{Estimate, OF_LOADS, OF_OTHERS, Pass, estimate};
 use fractum_output::atomic;
 use fractum_output::number::{grouped, quantity, significant};
 use fractum_output::study::run::Planned;
 use fractum_output::summary::{Status, Summary};
+use fractum_output::warning::{Code, Warning};
 
 use crate::error::Failure;
 use crate::input::mesh_of_case;
@@ -48,7 +50,7 @@ const LITTLE: usize = 10_000;
 /// Passes, with that on the mesh of the user, before the first bar is believed.
 const LEAST: usize = 6;
 
-/// What is left of its peak where a pass that stopped itself has passed it.
+/// What is left at the end of the peak of a load, where a pass has gone beyond it.
 const PASSED: f64 = 0.98;
 
 /// The passes of a case.
@@ -60,6 +62,8 @@ struct Passes<'a> {
     folder: PathBuf,
     /// Name of the probe of the load, and its unit.
     load: (String, &'static str),
+    /// Why its error bars are not known to hold; empty where they are.
+    untried: Vec<&'static str>,
     /// Done so far, with their summaries and where damage came.
     done: Vec<(Pass, Summary, Damaged)>,
 }
@@ -84,9 +88,11 @@ pub(crate) fn run(
         return Err(Failure::Input(Diagnostics(vec![note.remedy("add a probe of a reaction")])));
     };
     let load = (case.probes[load].name.value.clone(), unit);
-    let mut passes = Passes { case, path, options, folder: results.join(PASSES), load, done: Vec::new() };
     let (base, _) = mesh_of_case(case)?;
+    let untried = untried(case, &base);
+    let mut passes = Passes { case, path, options, folder: results.join(PASSES), load, untried, done: Vec::new() };
     passes.add("1-as-meshed", None)?;
+    passes.refuse_warnings(&passes.warnings_of(0), results)?;
     passes.tell_last(asked);
     while passes.goes_on(asked) {
         let (mesh, name) = passes.mesh(&base, asked)?;
@@ -98,7 +104,45 @@ pub(crate) fn run(
     Ok((publish::publish(&passes, finest, asked, results)?, measure))
 }
 
+/// What sets a case apart from those whose bars were held against exact loads: plane bodies at rest that crack in tension.
+fn untried(case: &Case, mesh: &Mesh) -> Vec<&'static str> {
+    let stages = || std::iter::once(case).chain(&case.later);
+    let moves = stages().any(|stage| stage.solver.kind != SolverKind::Static);
+    let is_other = |material: &Material| {
+        material.damage.as_ref().is_some_and(|damage| damage.value.law.criterion.kind() != CriterionKind::Rankine)
+    };
+    let all = [
+        (!mesh.tetrahedra.is_empty(), "a body in space"),
+        (moves, "motion"),
+        (case.materials.iter().any(is_other), "another criterion than Rankine's"),
+    ];
+    all.into_iter().filter_map(|(is_so, what)| is_so.then_some(what)).collect()
+}
+
 impl Passes<'_> {
+    /// Warnings of a pass that are those of the case. How late cracks run on its mesh is what the bars are about.
+    fn warnings_of(&self, pass: usize) -> Vec<Warning> {
+        let summary = &self.done[pass].1;
+        // A parameter of the mesh alone is used by the first pass.
+        let first = &self.done[0].1.warnings;
+        let is_own = |warning: &&Warning| match warning.code {
+            Code::Unused => first.contains(warning),
+            code => code != Code::CoarseMesh,
+        };
+        summary.warnings.iter().filter(is_own).cloned().collect()
+    }
+
+    /// Ends the run with a warning where warnings are errors.
+    fn refuse_warnings(&self, warnings: &[Warning], results: &Path) -> Result<(), Failure> {
+        match warnings.first().filter(|_| self.options.strict) {
+            Some(warning) => {
+                let saved = results.join(PASSES).display().to_string();
+                Err(Failure::Strict { warning: warning.clone(), saved })
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Whether another pass is to follow.
     fn goes_on(&self, asked: &AskedAccuracy) -> bool {
         let count = self.done.len();
@@ -131,7 +175,7 @@ impl Passes<'_> {
         let key = if self.case.source.stage.is_empty() { "solver.accuracy" } else { "stages[*].solver.accuracy" };
         overrides.push((key.to_owned(), "0".to_owned()));
         let planned = Planned { name: name.to_owned(), case: self.path.to_owned(), overrides, ..Planned::default() };
-        let options = Options { pass: Some(self.done.len()), ..self.options.clone() };
+        let options = Options { pass: Some(self.done.len()), strict: false, ..self.options.clone() };
         let summary = summary_of(&planned, &self.folder, &options)?;
         let damaged = Damaged::read(&self.folder.join(name));
         let pass = self.pass(name, &summary, &damaged);
@@ -149,8 +193,10 @@ impl Passes<'_> {
         let (peak, end) = (peaks.get(load).copied().unwrap_or(f64::NAN), summary.probes.get(load));
         let has_passed = end.is_some_and(|probe| probe.r#final.abs() < PASSED * peak.abs());
         let left_out = match summary.status {
-            Status::Stopped if !has_passed => format!("stopped before its peak: {}", summary.time.reason),
             _ if damaged.is_empty() => "no damage".to_owned(),
+            Status::Stopped if !has_passed => format!("stopped before its peak: {}", summary.time.reason),
+            // What grows to the end says nothing of the crack that stops it.
+            _ if !has_passed => "its load did not fall".to_owned(),
             _ => String::new(),
         };
         Pass {
@@ -166,7 +212,8 @@ impl Passes<'_> {
 
     /// Length beside which elements are large or small [m]: the shortest that any pass has told.
     fn length(&self) -> f64 {
-        self.done.iter().map(|(_, _, damaged)| damaged.length).fold(f64::INFINITY, f64::min)
+        let damaged = self.done.iter().map(|(_, _, damaged)| damaged).filter(|damaged| !damaged.is_empty());
+        damaged.map(|damaged| damaged.length).fold(f64::INFINITY, f64::min)
     }
 
     /// Passes whose peaks count: those on refined meshes.
@@ -176,12 +223,17 @@ impl Passes<'_> {
 
     /// Estimate of the peak of a probe.
     fn estimate(&self, name: &str, unit: &str) -> Option<Estimate> {
-        let known = if unit == self.load.1 { OF_LOADS } else { OF_OTHERS };
         let length = self.length();
         let sizes: Vec<f64> = self.counted().map(|pass| pass.size / length).collect();
-        let peaks: Option<Vec<f64>> = self.counted().map(|pass| pass.peaks.get(name).copied()).collect();
-        let [value, half] = estimate(&sizes, &peaks?, known)?;
-        Some(Estimate { unit: unit.to_owned(), value, half })
+        let peaks =
+            |name: &str| -> Option<Vec<f64>> { self.counted().map(|pass| pass.peaks.get(name).copied()).collect() };
+        let (own, loads) = (peaks(name)?, peaks(&self.load.0)?);
+        let [value, half] = match proportion(&own, &loads) {
+            // The load itself, or what is made of it, such as a strength.
+            Some(ratio) => estimate(&sizes, &loads, OF_LOADS)?.map(|value| ratio * value),
+            None => estimate(&sizes, &own, OF_OTHERS)?,
+        };
+        Some(Estimate { unit: unit.to_owned(), value, half: half.abs() })
     }
 
     /// Half of the bar of the load over the load.
@@ -258,6 +310,13 @@ impl Passes<'_> {
             estimate.unwrap_or_default()
         );
     }
+}
+
+/// What peaks are of those of the load, where that is the same in all passes but for the tolerance of equilibrium.
+fn proportion(peaks: &[f64], loads: &[f64]) -> Option<f64> {
+    let ratio = peaks.first()? / loads.first()?;
+    let is_same = |(peak, load): (&f64, &f64)| (peak - ratio * load).abs() <= 1e-3 * peak.abs();
+    (ratio.is_finite() && ratio != 0.0 && peaks.iter().zip(loads).all(is_same)).then_some(ratio)
 }
 
 /// Does a pass; its summary, also where it stopped itself.

@@ -279,7 +279,7 @@ fn run_case(run: RunArguments, ranks: Ranks) -> Result<ExitCode, Failure> {
         quiet: run.quiet || !leads,
         strict: run.strict,
         cache: cache(),
-        pass: None,
+        ..Options::default()
     };
     let Outcome { summary, folder, load } = fractum::run_shared(&run.case, &options, ranks)?;
     if !leads {

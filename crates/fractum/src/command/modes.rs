@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: ModesArguments) -> Result<ExitCode, Failure> {
         quiet,
         strict: false,
         cache: cache(),
-        pass: None,
+        ..Options::default()
     };
     let Outcome { summary, folder, .. } = fractum::run(&case, &options)?;
     let Some(found) = &summary.modes else { return Ok(ExitCode::Interrupted) };
