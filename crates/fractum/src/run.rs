@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use fractum_case::{Diagnostic, Diagnostics, read_case};
+use fractum_case::read_case;
 
 use crate::accuracy;
 use crate::error::Failure;
@@ -34,11 +34,11 @@ pub(crate) fn run_measured(path: &Path, options: &Options) -> Result<(Outcome, M
 }
 
 fn measure(path: &Path, options: &Options, ranks: Ranks) -> Result<(Outcome, Measure), Failure> {
-    let case = ranks.together(read_case(path, &options.overrides).map_err(Failure::from))?;
-    let Some(asked) = case.asked_accuracy() else { return run_whole(path, options, ranks) };
-    if ranks.processes().all > 1 {
-        let note = Diagnostic::error(&asked.share.place, "in a run of several processes");
-        return Err(Failure::Input(Diagnostics(vec![note.expected("one process; threads are not limited")])));
+    if ranks.processes().all == 1 {
+        let case = read_case(path, &options.overrides)?;
+        if let Some(asked) = case.asked_accuracy() {
+            return accuracy::run(path, &case, asked, options);
+        }
     }
-    accuracy::run(path, &case, asked, options)
+    run_whole(path, options, ranks)
 }

@@ -204,13 +204,17 @@ fn a_rank_that_cannot_begin_ends_all() {
 
 #[test]
 fn what_ranks_cannot_run_is_refused_once_and_by_name() {
-    let place = Workplace::new(&bar().replace("kind = \"explicit\"", "kind = \"auto\""));
-    let results = on_ranks(&place, 3, &options(&place, "refused"));
-    let text = results[0].as_ref().unwrap_err().to_string();
-    assert!(
-        text.contains("case.toml:") && text.contains("a solver that is not explicit cannot be run by several"),
-        "{text}"
-    );
-    assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
-    assert!(!place.path("refused").exists());
+    let kinds = [
+        ("kind = \"auto\"", "a solver that is not explicit"),
+        ("kind = \"explicit\"\naccuracy = \"3 %\"", "passes to an accuracy"),
+    ];
+    for (kind, what) in kinds {
+        let place = Workplace::new(&bar().replace("kind = \"explicit\"", kind));
+        let results = on_ranks(&place, 3, &options(&place, "refused"));
+        let text = results[0].as_ref().unwrap_err().to_string();
+        let what = format!("{what} cannot be run by several");
+        assert!(text.contains("case.toml:") && text.contains(&what), "{text}");
+        assert!(results[1..].iter().all(|result| matches!(result, Err(Failure::Elsewhere(_)))));
+        assert!(!place.path("refused").exists());
+    }
 }

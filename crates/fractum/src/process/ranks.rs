@@ -246,6 +246,7 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
             .extend(case.bodies.iter().filter_map(|body| Some((&body.name.place, undivided_bonds(case, &body.kind)?))));
     }
     found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
+    found.extend(case.solver.accuracy.iter().map(|asked| (&asked.share.place, "passes to an accuracy")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
     found
 }
