@@ -53,6 +53,9 @@ unit = "N"
 [[probes]]
 name = "strength"
 expression = "max(load) / 0.0432 m^2"
+[[probes]]
+name = "behind"
+crack = { measure = "centre", along = "y", where = "x < 0.1 m" }
 [[expect]]
 quantity = "peak"
 value = "55.46 kN"
@@ -134,6 +137,8 @@ fn peaks_get_error_bars_and_passes_are_kept() {
     // In another unit it is the same load.
     assert!((of("strength", "value") / value * 0.0432 - 1.0).abs() < 1e-12);
     assert!((of("strength", "half") / half * 0.0432 - 1.0).abs() < 1e-12);
+    // There is no crack behind the tip of the slit, and a probe that looks there has neither value nor bar.
+    assert_eq!([&first["probes"]["behind"]["max"], &accuracy["probes"]["behind"]], [&Value::Null; 2]);
     let sizes: Vec<f64> =
         accuracy["passes"].as_array().unwrap().iter().map(|pass| pass["size"].as_f64().unwrap()).collect();
     assert!(sizes[3] < 0.7 * sizes[2] && sizes[1] < sizes[0], "{sizes:?}");

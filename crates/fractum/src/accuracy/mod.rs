@@ -187,8 +187,9 @@ impl Passes<'_> {
         let of_probe = |probe: &fractum_output::summary::Probe| {
             if probe.min.abs() > probe.max.abs() { probe.min } else { probe.max }
         };
-        let peaks: BTreeMap<String, f64> =
-            summary.probes.iter().map(|(name, probe)| (name.clone(), of_probe(probe))).collect();
+        // A probe that looks where no crack has come has no value.
+        let of_probes = summary.probes.iter().map(|(name, probe)| (name.clone(), of_probe(probe)));
+        let peaks: BTreeMap<String, f64> = of_probes.filter(|(_, peak)| peak.is_finite()).collect();
         let load = &self.load.0;
         let (peak, end) = (peaks.get(load).copied().unwrap_or(f64::NAN), summary.probes.get(load));
         let has_passed = end.is_some_and(|probe| probe.r#final.abs() < PASSED * peak.abs());
