@@ -94,6 +94,7 @@ UNSTRUCTURED = {
     "l-panel-plane/rows-5": ("l-panel-plane/panel.geo", {"h": 0.005, "algorithm": 6}, False),
     "branching-plane/delaunay": ("branching-plane/plate.geo", {"h": 0.0007, "algorithm": 5}, False),
     "branching-plane/rows": ("branching-plane/plate.geo", {"h": 0.0005, "algorithm": 6}, False),
+    "branching-plane/plugged": ("branching-plane/plate.geo", {"h": 0.0005, "algorithm": 5, "plug": 1}, False),
     "graded-plate-plane/plate": ("graded-plate-plane/plate.geo", {"h": 0.0025}, False),
     "heat-plane/sheet": ("heat-plane/plate.geo", {"L": 0.05, "H": 0.03, "h": 0.001}, False),
     "heat-plane/strip": ("heat-plane/plate.geo", {"L": 0.01, "H": 0.005, "h": 0.00012}, False),

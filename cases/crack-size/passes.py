@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Crack loads with error bars against exact ones (needs numpy and scipy): the scenes of scenes.csv on coarse rows of triangles, with solver.accuracy.
 
-    python passes.py PROGRAM [FOLDER] [NAME ...]
+    python passes.py PROGRAM [FOLDER] [--phase-field] [NAME ...]
 
 Each scene begins on squares of its `size` that are cut into triangles. A line tells how far the estimate is from the exact load, half of its bar, whether the
 bar holds the truth, the time of all passes, and how far each pass is off.
@@ -31,6 +31,7 @@ poisson_ratio = {poisson_ratio}
 tensile_strength = {tensile_strength}
 fracture_energy = {fracture_energy}
 softening = "{softening}"
+regularisation = "{regularisation}"
 [[bodies]]
 name = "body"
 kind = "solid"
@@ -59,7 +60,7 @@ def support(group, text):
     return f'[[supports]]\ngroup = "{group}"\n{text}\n'
 
 
-def begun(scene, size, folder):
+def begun(scene, size, folder, regularisation):
     """Writes mesh and case: x along the crack, y across it."""
     is_beam, a, width, half = scene["kind"] == "beam", scene["notch"], scene["width"], scene["height"]
     x = np.concatenate([cut(0, a, size)[:-1], cut(a, width, size)]) if a > 0 else cut(0, width, size)
@@ -102,7 +103,7 @@ def begun(scene, size, folder):
         supports += "".join(support(name, f'displacement = {{ y = "{sign}{way / 2:.6g} m*t/1 s" }}') for name, sign in (("top", ""), ("bottom", "-")))
     near = max(0.25 * (width - a), 4 * size) if a > 0 else 0.5 * half
     places = {"begin": f"{a - 2.5 * size:.6g}" if a > 0 else "-1", "near": f"{near:.6g}"}
-    (folder / "case.toml").write_text(CASE.format(**scene, **places, supports=supports, pulled=pulled, along=along))
+    (folder / "case.toml").write_text(CASE.format(**scene, **places, regularisation=regularisation, supports=supports, pulled=pulled, along=along))
 
 
 def write(path, nodes, groups):
@@ -118,8 +119,10 @@ def write(path, nodes, groups):
 
 
 def main():
-    program = Path(sys.argv[1]).resolve()
-    results, only = Path(sys.argv[2] if len(sys.argv) > 2 else "passes"), sys.argv[3:]
+    field = "--phase-field"
+    regularisation = "phase-field" if field in sys.argv else "none"
+    program, *rest = [argument for argument in sys.argv[1:] if argument != field]
+    program, results, only = Path(program).resolve(), Path(rest[0] if rest else "passes"), rest[1:]
     held = []
     for scene in table(HERE / "scenes.csv"):
         name = scene["name"]
@@ -128,7 +131,7 @@ def main():
         folder = results / name
         folder.mkdir(parents=True, exist_ok=True)
         zone = scene["young_modulus"] * scene["fracture_energy"] / scene["tensile_strength"] ** 2
-        begun(scene, scene["size"] * zone, folder)
+        begun(scene, scene["size"] * zone, folder, regularisation)
         started = time.time()
         ended = subprocess.run([program, "run", "case.toml", "-o", "out", "--overwrite", "--quiet", "--threads", "1"], cwd=folder, capture_output=True, text=True)
         took = time.time() - started

@@ -4,6 +4,7 @@ SetFactory("Built-in");
 DefineConstant[
   h = 0.0005         // element size ahead of the notch; twice that at the far end
   algorithm = 5      // 5: Delaunay; 6: rows (frontal)
+  plug = 0           // 1: the notch is full of a body "plug"
 ];
 
 L = 0.1; H = 0.04; N = 0.05; w = h / 2;
@@ -24,6 +25,13 @@ Curve Loop(1) = {1:8};
 Plane Surface(1) = {1};
 
 Physical Surface("plate") = {1};
+If (plug)
+  Line(9) = {8, 5};
+  Curve Loop(2) = {-9, -7, -6, -5};
+  Plane Surface(2) = {2};
+  Physical Surface("plug") = {2};
+  Physical Curve("right") = {2};
+EndIf
 Physical Curve("bottom") = {1};
 Physical Curve("top") = {3};
 

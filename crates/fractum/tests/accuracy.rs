@@ -189,6 +189,24 @@ fn what_cannot_get_an_error_bar_is_told() {
 }
 
 #[test]
+fn a_phase_field_becomes_narrower_with_the_elements() {
+    let place = place(PLATE);
+    let field = "materials.m.damage.regularisation=\"phase-field\"";
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--set", field, "--set", "solver.accuracy_runs=5"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let [first, second] = ["1-as-meshed", "3-refined"]
+        .map(|pass| fs::read_to_string(place.path("out/passes").join(pass).join("run.log")).unwrap());
+    assert!(!first.contains("phase field of length") && second.contains("phase field of length"), "{first}");
+    let load = &summary(&place, "out")["accuracy"]["probes"]["load"];
+    let [value, half] = ["value", "half"].map(|key| load[key].as_f64().unwrap());
+    assert!((value - 55.46e3).abs() < half && half < 0.08 * value, "{value} {half}");
+    let length = "materials.m.damage.length=\"20 mm\"";
+    let given = place.fractum(&["run", "case.toml", "-o", "given", "--set", field, "--set", length]);
+    assert_eq!(given.code, Some(1), "{}", given.stderr);
+    assert!(given.stderr.contains("a phase field of a given length"), "{}", given.stderr);
+}
+
+#[test]
 fn a_load_that_grows_to_the_end_has_no_bar() {
     let place = place(PLATE);
     let ended = place.fractum(&["run", "case.toml", "-o", "out", "--set", "solver.end=\"0.2 s\""]);

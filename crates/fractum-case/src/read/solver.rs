@@ -207,8 +207,9 @@ pub(super) fn refuse_accuracy(
     });
     for (body, solid) in solids {
         let damage = materials.get(solid.material).and_then(|(_, material)| material.as_ref()?.damage.as_ref());
-        let what = if damage.is_some_and(|damage| damage.value.regularisation.is_some()) {
-            ("a phase field", "leave regularisation out")
+        let field = damage.and_then(|damage| damage.value.regularisation);
+        let what = if field.is_some_and(|field| field.length.is_some()) {
+            ("a phase field of a given length", "leave length out: it becomes smaller with the elements of each pass")
         } else if solid.formulation == Formulation::Standard {
             ("standard elements", "leave formulation out")
         } else {

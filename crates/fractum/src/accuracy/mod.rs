@@ -14,7 +14,7 @@ use fractum_case::model::{AskedAccuracy, Material, SolverKind, WHOLE_MESH, load_
 use fractum_case::{Case, Diagnostic, Diagnostics};
 use fractum_fem::CriterionKind;
 use fractum_mesh::{Mesh, MshFormat, RefineError, RefineOptions, refined, write_msh};
-use fractum_output::accuracy::{Estimate, OF_LOADS, OF_OTHERS, Pass, estimate};
+use fractum_output::accuracy::{Estimate, Known, OF_FIELDS, OF_LOADS, OF_OTHERS, Pass, estimate};
 use fractum_output::atomic;
 use fractum_output::number::{grouped, quantity, significant};
 use fractum_output::study::run::Planned;
@@ -91,12 +91,12 @@ pub(crate) fn run(
     let (base, _) = mesh_of_case(case)?;
     let untried = untried(case, &base);
     let mut passes = Passes { case, path, options, folder: results.join(PASSES), load, untried, done: Vec::new() };
-    passes.add("1-as-meshed", None)?;
+    passes.add("1-as-meshed", None, true)?;
     passes.refuse_warnings(&passes.warnings_of(0), results)?;
     passes.tell_last(asked);
     while passes.goes_on(asked) {
-        let (mesh, name) = passes.mesh(&base, asked)?;
-        passes.add(&name, Some(&mesh))?;
+        let (mesh, name, is_coarse) = passes.mesh(&base, asked)?;
+        passes.add(&name, Some(&mesh), is_coarse)?;
         passes.tell_last(asked);
     }
     let (finest, particles) = (passes.finest(), passes.done[0].1.counts.particles);
@@ -117,6 +117,10 @@ fn untried(case: &Case, mesh: &Mesh) -> Vec<&'static str> {
         (case.materials.iter().any(is_other), "another criterion than Rankine's"),
     ];
     all.into_iter().filter_map(|(is_so, what)| is_so.then_some(what)).collect()
+}
+
+fn has_field(material: &Material) -> bool {
+    material.damage.as_ref().is_some_and(|damage| damage.value.regularisation.is_some())
 }
 
 impl Passes<'_> {
@@ -165,8 +169,14 @@ impl Passes<'_> {
     /// Does a pass, unless it has been done before.
     ///
     /// - `mesh`: file of its mesh; none for that of the case
-    fn add(&mut self, name: &str, mesh: Option<&Path>) -> Result<(), Failure> {
+    /// - `is_coarse`: it looks where the crack goes, without a phase field, which its elements may be too large for
+    fn add(&mut self, name: &str, mesh: Option<&Path>, is_coarse: bool) -> Result<(), Failure> {
         let mut overrides = self.options.overrides.clone();
+        let fields = self.case.materials.iter().filter(|material| has_field(material));
+        if is_coarse {
+            let none = |material: &Material| format!("materials.{}.damage.regularisation", material.name.value);
+            overrides.extend(fields.map(|material| (none(material), "\"none\"".to_owned())));
+        }
         if let Some(mesh) = mesh {
             let file = std::path::absolute(mesh).unwrap_or_else(|_| mesh.to_owned());
             let file = file.display().to_string().replace('\\', "/").replace('"', "\\\"");
@@ -178,7 +188,10 @@ impl Passes<'_> {
         let options = Options { pass: Some(self.done.len()), strict: false, ..self.options.clone() };
         let summary = summary_of(&planned, &self.folder, &options)?;
         let damaged = Damaged::read(&self.folder.join(name));
-        let pass = self.pass(name, &summary, &damaged);
+        let mut pass = self.pass(name, &summary, &damaged);
+        if is_coarse && mesh.is_some() && self.has_field() {
+            pass.left_out = "without its phase field".to_owned();
+        }
         self.done.push((pass, summary, damaged));
         Ok(())
     }
@@ -231,10 +244,19 @@ impl Passes<'_> {
         let (own, loads) = (peaks(name)?, peaks(&self.load.0)?);
         let [value, half] = match proportion(&own, &loads) {
             // The load itself, or what is made of it, such as a strength.
-            Some(ratio) => estimate(&sizes, &loads, OF_LOADS)?.map(|value| ratio * value),
+            Some(ratio) => estimate(&sizes, &loads, self.of_loads())?.map(|value| ratio * value),
             None => estimate(&sizes, &own, OF_OTHERS)?,
         };
         Some(Estimate { unit: unit.to_owned(), value, half: half.abs() })
+    }
+
+    /// What is known of loads of cracks on meshes like those of the passes.
+    fn of_loads(&self) -> Known {
+        if self.has_field() { OF_FIELDS } else { OF_LOADS }
+    }
+
+    fn has_field(&self) -> bool {
+        self.case.materials.iter().any(has_field)
     }
 
     /// Half of the bar of the load over the load.
@@ -243,10 +265,15 @@ impl Passes<'_> {
         Some((estimate.half / estimate.value).abs())
     }
 
+    /// Size of the elements of the first passes that tell how late cracks run [m].
+    fn first_size(&self) -> f64 {
+        self.done[0].0.size.min(FIRST * self.length())
+    }
+
     /// Size of the elements of the next pass [m].
     fn next_size(&self) -> f64 {
         let sizes = || self.done.iter().map(|(pass, ..)| pass.size);
-        let first = self.done[0].0.size.min(FIRST * self.length());
+        let first = self.first_size();
         // Around a crack that a very coarse mesh has found fine elements would be many.
         let nearest = sizes().fold(f64::INFINITY, f64::min) / STEP;
         let made = sizes().skip(1).filter(|size| *size < 1.5 * first).count();
@@ -260,8 +287,8 @@ impl Passes<'_> {
         if near.is_empty() { Zone::around(all()) } else { Zone::around(near.into_iter()) }
     }
 
-    /// File of the mesh of the next pass, and the name of the pass.
-    fn mesh(&self, base: &Mesh, asked: &AskedAccuracy) -> Result<(PathBuf, String), Failure> {
+    /// File of the mesh of the next pass, the name of the pass, and whether its elements are larger than those of the first that tell how late cracks run.
+    fn mesh(&self, base: &Mesh, asked: &AskedAccuracy) -> Result<(PathBuf, String, bool), Failure> {
         let number = self.done.len();
         let seed = |_| Some(number as u64);
         let mut size = self.next_size();
@@ -290,7 +317,7 @@ impl Passes<'_> {
         atomic::create_folder(&folder)?;
         let file = folder.join(MESH);
         atomic::write_with(&file, |out| write_msh(&mesh, MshFormat::V4_1Binary, out))?;
-        Ok((file, name))
+        Ok((file, name, size > 1.5 * self.first_size()))
     }
 
     /// A line on what the last pass came to.
