@@ -24,6 +24,7 @@ const JOINT: InterfaceLaw = InterfaceLaw {
     dilation_slip: f64::INFINITY,
     mixed_mode: MixedMode::Power(1.0),
     softening: InterfaceSoftening::Linear,
+    roughness: None,
 };
 const STRONG: InterfaceLaw =
     InterfaceLaw { tensile_strength: 1e12, cohesion: 1e12, opening_energy: 1e9, sliding_energy: 1e9, ..JOINT };

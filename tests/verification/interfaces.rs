@@ -26,6 +26,7 @@ const LAW: InterfaceLaw = InterfaceLaw {
     dilation_slip: f64::INFINITY,
     mixed_mode: MixedMode::Power(1.0),
     softening: InterfaceSoftening::Linear,
+    roughness: None,
 };
 
 /// A bar along x, in halves that an interface joins.

@@ -26,6 +26,7 @@ const OPEN: InterfaceLaw = InterfaceLaw {
     dilation_slip: f64::INFINITY,
     mixed_mode: MixedMode::Power(1.0),
     softening: InterfaceSoftening::Linear,
+    roughness: None,
 };
 
 /// A joint along y = 0 into the middle of which liquid is pumped at a constant rate: half of a plane crack, or a quarter of a disc.

@@ -55,7 +55,7 @@ pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_re
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;
-pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
+pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, Roughness, SpringInterface};
 pub use fractum_kernels::liquid::CubicLaw;
 pub use fragment::{Fragment, solid_pieces};
 pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, Stemming, SymmetryPlanes};

@@ -1,6 +1,6 @@
 //! `[[interfaces]]`: inner faces of solids with a strength of their own.
 
-use fractum_scene::{InterfaceLaw, InterfaceSoftening, MixedMode, SpringInterface};
+use fractum_scene::{InterfaceLaw, InterfaceSoftening, MixedMode, Roughness, SpringInterface};
 
 use super::names;
 use super::time_functions::time_function;
@@ -11,6 +11,9 @@ use crate::{Diagnostic, Spanned, TimeFunction};
 
 /// Energy over that stored up to the strength below which softening would snap back.
 pub(crate) const LEAST_DUCTILITY: f64 = 1.05;
+
+/// Least angle of friction of worn sides beside roughness [degrees]: below it strength falls as the pressure grows.
+const LEAST_BESIDE_ROUGHNESS: f64 = 10.0;
 
 /// Reads all interfaces; nothing where one of them is wrong.
 pub(super) fn read(root: &Table<'_>) -> Option<Vec<Interface>> {
@@ -115,6 +118,7 @@ fn law(table: &Table<'_>) -> Option<InterfaceLaw> {
         dilation_slip: dilation_slip?,
         mixed_mode: MixedMode::Power(1.0),
         softening: InterfaceSoftening::Linear,
+        roughness: roughness(table, residual)?,
     };
     if !bonded {
         for name in OF_BONDS {
@@ -152,6 +156,29 @@ fn law(table: &Table<'_>) -> Option<InterfaceLaw> {
         softening,
         ..unbonded
     })
+}
+
+/// Asperities, where a coefficient is given.
+///
+/// - `smooth`: coefficient of residual friction
+fn roughness(table: &Table<'_>, smooth: f64) -> Option<Option<Roughness>> {
+    if !table.has("joint_roughness") {
+        for name in ["joint_wall_strength", "peak_slip"] {
+            table.refuse(name, "without joint_roughness");
+        }
+        return Some(None);
+    }
+    let coefficient = table.quantity("joint_roughness");
+    let coefficient = coefficient.check(|own| *own > 0.0 && *own <= 20.0, "above 0, at most 20").required();
+    let wall_strength = table.quantity("joint_wall_strength").physical().usual(&STRENGTH).required();
+    let peak_slip = table.quantity("peak_slip").positive().or_if_absent(f64::INFINITY);
+    if smooth < fractum_math::tan(LEAST_BESIDE_ROUGHNESS.to_radians()) {
+        let note = Diagnostic::error(&table.place_below("joint_roughness"), "beside less friction of worn sides");
+        let expected = format!("residual_friction_angle of {LEAST_BESIDE_ROUGHNESS} deg at least");
+        table.reader.note(note.expected(&expected).remedy("set it: rock joints have 20 to 40 deg"));
+        return None;
+    }
+    Some(Some(Roughness { coefficient: coefficient?, wall_strength: wall_strength?, peak_slip: peak_slip? }))
 }
 
 /// Tangent of an angle.

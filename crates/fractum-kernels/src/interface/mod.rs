@@ -11,7 +11,7 @@ mod stiff;
 use serde::{Deserialize, Serialize};
 
 use crate::Vec3;
-use crate::elementary::{exp, pow};
+use crate::elementary::{atan, exp, log10, pow, tan};
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 
@@ -41,7 +41,25 @@ pub struct InterfaceLaw {
     pub mixed_mode: MixedMode,
     /// How it softens.
     pub softening: InterfaceSoftening,
+    /// Asperities, which raise the friction under small pressures; none of smooth sides.
+    pub roughness: Option<Roughness>,
 }
+
+/// Asperities of a rock joint: under a pressure p it rubs as at the angle φ_r + JRC log10(JCS/p) in degrees, at most 70 (Barton and Choubey 1977).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Roughness {
+    /// Joint roughness coefficient JRC, 0 to 20.
+    pub coefficient: f64,
+    /// Compressive strength of its walls JCS [Pa], > 0.
+    pub wall_strength: f64,
+    /// Slip beyond which asperities wear [m], > 0: JRC falls with (peak_slip / slip)^0.381 (Olsson and Barton 2001).
+    pub peak_slip: f64,
+}
+
+/// Largest angle of friction of rough sides.
+const STEEPEST: f64 = 70.0 * core::f64::consts::PI / 180.0;
+/// Exponent by which asperities wear.
+const WEAR: f64 = 0.381;
 
 /// Energy that breaks an interface which opens and slides.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,6 +111,19 @@ impl InterfaceForce {
     }
 }
 
+impl Roughness {
+    /// Coefficient of friction under a pressure [Pa], after a slip [m].
+    ///
+    /// - `smooth`: that of worn sides, tan φ_r
+    #[inline]
+    pub fn friction(&self, smooth: f64, pressure: f64, slip: f64) -> f64 {
+        let wear = if slip > self.peak_slip { pow(self.peak_slip / slip, WEAR) } else { 1.0 };
+        let raised = (self.coefficient * wear * log10((self.wall_strength / pressure).max(1.0))).min(90.0);
+        let angle = (atan(smooth) + raised.to_radians()).min(STEEPEST);
+        tan(angle).max(smooth)
+    }
+}
+
 impl InterfaceLaw {
     /// Whether its sides were joined at all.
     #[inline]
@@ -128,10 +159,19 @@ impl InterfaceLaw {
         }
     }
 
-    /// Coefficient of friction where a share χ of the strength is left.
+    /// Coefficient of friction.
+    ///
+    /// - `residual`: share χ of the strength that is left
+    /// - `pressure` [Pa], `slip` so far [m]: what asperities depend on
     #[inline]
-    pub fn friction_at(&self, residual: f64) -> f64 {
-        self.residual_friction + (self.friction - self.residual_friction) * residual
+    pub fn friction_at(&self, residual: f64, pressure: f64, slip: f64) -> f64 {
+        let smooth = self.residual_friction + (self.friction - self.residual_friction) * residual;
+        match &self.roughness {
+            None => smooth,
+            Some(roughness) => {
+                smooth - self.residual_friction + roughness.friction(self.residual_friction, pressure, slip)
+            }
+        }
     }
 
     /// Opening that asperities ask for after a slip [m].

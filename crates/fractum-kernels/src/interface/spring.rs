@@ -47,21 +47,24 @@ impl SpringInterface {
         if state.secant > 0.0 {
             self.soften(&jump, pressure, state);
         }
-        let friction = law.friction_at(state.residual);
         let slipped = Vec3::new(0.0, state.slip[0], state.slip[1]);
+        // Asperities are worn by what has slid before.
+        let (residual, worn) = (state.residual, slipped.norm());
+        let bears = |pressure: f64| law.friction_at(residual, pressure, worn) * pressure;
         let trial = (Vec3::new(0.0, jump.y, jump.z) - slipped) * across;
         let size = trial.norm();
         // What has slid stands on asperities, which press.
         let presses = |slip: Vec3| normal * (law.dilated(slip.norm()) - jump.x).max(0.0);
         let mut rests = presses(slipped);
-        let mut stick = slip_to_cone(trial, size, friction * rests);
-        if law.dilation > 0.0 && size > friction * rests {
+        let limit = bears(rests);
+        let mut stick = slip_to_cone(trial, size, limit);
+        if law.dilation > 0.0 && size > limit {
             // Share of the trial that slides: the less is left of it, and the more asperities press, the farther it went.
             let (mut holds, mut slides) = (0.0, 1.0);
             for _ in 0..HALVES {
                 let share = 0.5 * (holds + slides);
-                let bears = friction * presses(slipped + trial * (share / across));
-                *(if (1.0 - share) * size > bears { &mut holds } else { &mut slides }) = share;
+                let limit = bears(presses(slipped + trial * (share / across)));
+                *(if (1.0 - share) * size > limit { &mut holds } else { &mut slides }) = share;
             }
             (stick, rests) = (trial * (1.0 - slides), presses(slipped + trial * (slides / across)));
         }
@@ -83,6 +86,10 @@ impl SpringInterface {
     pub fn secant(&self, jump: &Vec3, force: &InterfaceForce, state: &InterfaceState) -> [f64; 2] {
         let [normal, across] = self.stiffness;
         let (whole, broken) = (state.secant, 1.0 - state.secant);
+        // Sides that were never joined, before anything moves: they touch, and hold.
+        if whole == 0.0 && *jump == Vec3::zeros() {
+            return self.stiffness;
+        }
         let closed = if jump.x < 0.0 || force.contact > 0.0 { normal } else { whole * normal };
         let held = tangential(&Vec3::new(0.0, jump.y - state.slip[0], jump.z - state.slip[1]));
         let went = tangential(jump);
@@ -98,6 +105,9 @@ impl SpringInterface {
     /// - `here`, `secant`: the traction there, and [`SpringInterface::secant`]
     #[inline]
     pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, here: &Vec3, secant: [f64; 2]) -> Mat3 {
+        if state.secant == 0.0 && *jump == Vec3::zeros() {
+            return Mat3::from_diagonal(&Vec3::new(secant[0], secant[1], secant[1]));
+        }
         let size = tangential(jump);
         let along = if size > 0.0 { Vec3::new(0.0, jump.y, jump.z) / size } else { Vec3::y() };
         let across = Vec3::x().cross(&along);
@@ -141,7 +151,9 @@ impl SpringInterface {
     fn soften(&self, jump: &Vec3, pressure: f64, state: &mut InterfaceState) {
         for _ in 0..LOOKS {
             let before = state.residual;
-            let Some(Loading { ratio, end }) = self.loading(jump, pressure, before) else { return };
+            let worn = tangential(&Vec3::new(0.0, state.slip[0], state.slip[1]));
+            let friction = self.law.friction_at(before, pressure, worn);
+            let Some(Loading { ratio, end }) = self.loading(jump, friction * pressure) else { return };
             let residual = match self.law.softening {
                 InterfaceSoftening::Linear => ((end - ratio) / (end - 1.0)).max(0.0),
                 InterfaceSoftening::Exponential => crate::elementary::exp((1.0 - ratio) / (end - 0.5)),
@@ -155,11 +167,13 @@ impl SpringInterface {
     }
 
     /// Where a jump lies between onset and end; none below the onset.
+    ///
+    /// - `rubs`: friction that helps against sliding [Pa]
     #[inline]
-    fn loading(&self, jump: &Vec3, pressure: f64, residual: f64) -> Option<Loading> {
+    fn loading(&self, jump: &Vec3, rubs: f64) -> Option<Loading> {
         let (law, [normal, across]) = (&self.law, self.stiffness);
         let opens = normal * jump.x.max(0.0);
-        let slides = (across * tangential(jump) - law.friction_at(residual) * pressure).max(0.0);
+        let slides = (across * tangential(jump) - rubs).max(0.0);
         let [first, second] = [opens / law.tensile_strength, slides / law.cohesion];
         let square = first * first + second * second;
         if square <= 1.0 {

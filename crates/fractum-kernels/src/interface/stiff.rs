@@ -39,7 +39,7 @@ pub fn stiff_traction(law: &InterfaceLaw, free: &FreeJump, state: &mut Interface
     }
     // Closed.
     let contact = pulls + free.inertia.x * (opens - free.ahead.x);
-    let friction = law.friction_at(state.residual) * contact;
+    let friction = law.friction_at(state.residual, contact, tangential(&free.now)) * contact;
     let flat = |v: Vec3| Vec3::new(0.0, v.y, v.z);
     let (now, ahead) = (flat(free.now), flat(free.ahead));
     let inertia = free.inertia.y.min(free.inertia.z);

@@ -2,7 +2,7 @@
 
 use fractum_kernels::Vec3;
 use fractum_kernels::interface::{
-    FreeJump, InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, MixedMode, SpringInterface,
+    FreeJump, InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, MixedMode, Roughness, SpringInterface,
     stiff_traction,
 };
 
@@ -28,6 +28,7 @@ fn law(draw: &mut Draw) -> InterfaceLaw {
             MixedMode::BenzeggaghKenane(2.3),
         ]),
         softening: draw.one_of(&[InterfaceSoftening::Linear, InterfaceSoftening::Exponential]),
+        roughness: None,
     }
     .with_energies(draw)
 }
@@ -370,7 +371,7 @@ pub(crate) fn stiff_sliding(draw: &mut Draw) -> Held {
     let mut force = InterfaceForce::default();
     for step in 0..=STEPS {
         let left = led.state.residual;
-        let guess = left * law.cohesion + law.friction_at(left) * pressure;
+        let guess = left * law.cohesion + law.friction_at(left, pressure, 0.0) * pressure;
         force = led.step(place(step), place(step + 1), pushed(guess));
         hold((force.contact / pressure - 1.0).abs() < 1e-9, || format!("{force:?} under {pressure}"))?;
     }
@@ -379,4 +380,54 @@ pub(crate) fn stiff_sliding(draw: &mut Draw) -> Held {
     })?;
     let spent = led.account.work - led.account.friction;
     hold((spent / law.sliding_energy - 1.0).abs() < 1e-3, || format!("spends {spent} of {}", law.sliding_energy))
+}
+
+/// Rough sides that were never joined: Barton's strength under any pressure, which grows with it, and its wear; with a stiffness and without.
+pub(crate) fn rough_sliding(draw: &mut Draw) -> Held {
+    let smooth = draw.between(10f64.to_radians().tan(), 1.0);
+    let roughness = Roughness {
+        coefficient: draw.between(0.1, 20.0),
+        wall_strength: draw.over_decades(1e6, 3e8),
+        peak_slip: draw.over_decades(1e-5, 1e-1),
+    };
+    let law = InterfaceLaw {
+        tensile_strength: 0.0,
+        cohesion: 0.0,
+        friction: smooth,
+        residual_friction: smooth,
+        dilation: 0.0,
+        roughness: Some(roughness),
+        ..law(draw)
+    };
+    let pressure = draw.over_decades(1e2, 1e9);
+    let barton = |pressure: f64, slip: f64| {
+        let worn = roughness.coefficient * (roughness.peak_slip / slip).min(1.0).powf(0.381);
+        let raised = worn * (roughness.wall_strength / pressure).log10().max(0.0);
+        pressure * (smooth.atan().to_degrees() + raised).min(70.0).to_radians().tan().max(smooth)
+    };
+    let bears = |pressure: f64| law.friction_at(0.0, pressure, 0.0) * pressure;
+    hold((bears(pressure) / barton(pressure, 0.0) - 1.0).abs() < 1e-9, || format!("bears {}", bears(pressure)))?;
+    hold(bears(1.01 * pressure) > bears(pressure), || format!("falls as the pressure grows from {pressure}"))?;
+    let stiffness = pressure / roughness.peak_slip * draw.over_decades(10.0, 1e4);
+    let interface = SpringInterface { law, stiffness: [stiffness; 2] };
+    let mut state = law.intact(false);
+    let mut led = Led { law, inertia: stiffness, state: law.intact(true), account: Account::default() };
+    let slip_of = |step: u32| 30.0 * roughness.peak_slip * (f64::from(step) / f64::from(STEPS)).powi(2);
+    let mut before = 0.0;
+    for step in 0..=STEPS {
+        let slip = slip_of(step);
+        let worn = state.slip[0].abs();
+        let force = interface.load(Vec3::new(-pressure / stiffness, slip, 0.0), &mut state).traction();
+        let expected = barton(pressure, worn);
+        let slides = state.slip[0] > worn + 1e-9 * slip;
+        hold(!slides || (force.y / expected - 1.0).abs() < 1e-6, || format!("{} of {expected} Pa at {slip}", force.y))?;
+        let stays = state.slip[0] >= before - 1e-9 * slip;
+        hold(stays && force.y <= expected * (1.0 + 1e-6), || format!("{} Pa at {slip}", force.y))?;
+        let pushed = Vec3::new(-pressure, 2.0 * barton(pressure, 0.0), 0.0);
+        let stiff = led.step(Vec3::new(0.0, slip, 0.0), Vec3::new(0.0, slip_of(step + 1), 0.0), pushed);
+        let expected = barton(stiff.contact, slip);
+        hold((stiff.friction.y / expected - 1.0).abs() < 1e-6, || format!("{stiff:?} of {expected} Pa at {slip}"))?;
+        before = state.slip[0];
+    }
+    Ok(())
 }

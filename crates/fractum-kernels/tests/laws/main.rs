@@ -137,6 +137,7 @@ const LAWS: &[Row] = &[
     Row { law: "edge whose closed crack rubs", holds: damage::rubbing },
     Row { law: "strength of beds, by angle", holds: beds::by_angle },
     Row { law: "strength of beds, any way", holds: beds::way },
+    Row { law: "rough interface, sliding under pressure", holds: interface::rough_sliding },
 ];
 
 #[test]
