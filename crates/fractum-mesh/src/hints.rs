@@ -11,7 +11,7 @@ use crate::{Group, Mesh, topology};
 const SLIVER: f64 = 0.1;
 
 /// Hints on what keeps a mesh from being used as it was probably meant, each with its remedy: no groups, elements in none,
-/// quadrilaterals of a plane body, facets that lie inside of it, slivers.
+/// facets that lie inside of it, slivers, thin bodies, and bodies that lie upon or within each other.
 pub fn hints(mesh: &Mesh) -> Vec<String> {
     let mut hints = Vec::new();
     if mesh.groups.iter().all(|group| group.element_count() == 0) {
@@ -23,13 +23,7 @@ pub fn hints(mesh: &Mesh) -> Vec<String> {
     } else {
         hints.extend(in_no_group(mesh));
     }
-    if mesh.tetrahedra.is_empty() && !mesh.quads.is_empty() {
-        let count = mesh.quads.len();
-        hints.push(format!(
-            "{count} quadrilaterals: they may be surfaces of rigid bodies, but solids are of triangles; mesh without \
-             Recombine (Gmsh), with CPS3 or CPE3 (Abaqus)"
-        ));
-    }
+    hints.extend(without_solids(mesh));
     hints.extend(mesh.groups.iter().filter_map(|group| inner_facets(mesh, group)));
     hints.extend(sliver(
         "tetrahedron",
@@ -42,7 +36,21 @@ pub fn hints(mesh: &Mesh) -> Vec<String> {
             (mesh.triangles[element].to_vec(), mesh.triangle_tags[element])
         }));
     }
+    hints.extend(crate::bodies::hints(mesh));
     hints
+}
+
+/// What a mesh of shells or beams is good for.
+fn without_solids(mesh: &Mesh) -> Option<String> {
+    let what = match (mesh.tetrahedra.is_empty(), mesh.triangles.is_empty()) {
+        (false, _) => return None,
+        (true, false) if mesh.is_in_plane() => return None,
+        (true, false) => "the triangles are a surface in space, of which rigid bodies may be made",
+        (true, true) => "lines and points are no bodies",
+    };
+    Some(format!(
+        "no solids: {what}; a solid is of tetrahedra or hexahedra (C3D4, C3D8), or of triangles in one plane z = constant"
+    ))
 }
 
 /// Elements of the highest dimension that no group has.
@@ -151,8 +159,5 @@ mod tests {
         let [a, b, c, d] = mesh.tetrahedra[5].map(|node| node as usize);
         mesh.nodes[d] = (mesh.nodes[a] + mesh.nodes[b] + mesh.nodes[c]) / 3.0 + 0.001 * mesh.nodes[d];
         assert!(said(&mesh).contains("is nearly flat (radius ratio 0.0"), "{}", said(&mesh));
-        let mut mesh = structured_rectangle([2, 2], [1.0, 1.0], None);
-        (mesh.quads, mesh.quad_tags) = (vec![[0, 1, 4, 3]], vec![99]);
-        assert!(said(&mesh).contains("1 quadrilaterals: "), "{}", said(&mesh));
     }
 }

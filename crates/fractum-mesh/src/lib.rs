@@ -1,7 +1,8 @@
 //! Meshes for fractum: readers of Gmsh, Abaqus and VTK files, a writer of Gmsh files, and what is derived from nodes and elements alone.
 //!
 //! - [`read_msh`] and [`write_msh`]: MSH 2.2 and 4.1, ASCII and binary, from bytes and to any writer
-//! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes
+//! - [`read_inp`]: Abaqus input files; [`read_vtu`]: grids of VTK; [`read_mesh`] chooses by the first bytes; [`Gathered`]: one with the files
+//!   that it names
 //! - [`joined`]: one mesh of the files into which Gmsh writes its partitions
 //! - [`joined_bodies`]: bodies of which each has nodes of its own, joined where their faces conform
 //! - [`Mesh::cut`]: nodes doubled along faces inside of a mesh
@@ -9,12 +10,12 @@
 //! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
+//! - [`bodies`]: each group that a body may be made of, and how they lie beside each other
 //! - [`renumber`]: orders that keep neighbours close in memory
 //! - [`generate`]: structured boxes and rectangles for tests and benches
 //!
 //! The crate models straight-sided simplices: elements of higher order lose their mid nodes on reading, and
-//! hexahedra, prisms and pyramids are refused where the user asked to compute with them. It opens no file; the caller
-//! hands over the bytes.
+//! quadrilaterals, hexahedra, prisms and pyramids are split. It opens no file; the caller hands over the bytes.
 //!
 //! ```
 //! use fractum_mesh::{MshFormat, Vec3, generate::structured_box, read_msh, topology, write_msh};
@@ -33,6 +34,7 @@
 #![forbid(unsafe_code)]
 
 mod abaqus;
+pub mod bodies;
 mod coincident;
 mod cut;
 mod free;
@@ -50,7 +52,7 @@ mod tagged;
 pub mod topology;
 mod vtk;
 
-pub use abaqus::read_inp;
+pub use abaqus::{Gathered, read_inp};
 pub use coincident::{Coincident, Joint, coincident_nodes, joined_bodies};
 pub use cut::{CutAlong, CutError};
 pub use fractum_math::Vec3;
@@ -69,6 +71,11 @@ pub use vtk::read_vtu;
 
 /// The formats beside Gmsh's, for messages.
 const OTHERS: &str = "an Abaqus input file (.inp) or a VTK grid (.vtu)";
+
+/// How a pointer of Git LFS begins.
+const GIT_LFS: &[u8] = b"version https://git-lfs";
+/// What to say of one, behind its name.
+const IS_POINTER: &str = " a pointer of Git LFS, which stands for the file; fetch the file itself with: git lfs pull";
 
 /// Reads a mesh: a Gmsh file, an Abaqus input file or a grid of VTK, by its first bytes.
 ///

@@ -166,6 +166,13 @@ impl Mesh {
         self.tetrahedron_tags = tags(self.tetrahedra.len());
     }
 
+    /// Highest tag of a node or element; 0 of an empty mesh.
+    pub fn highest_tag(&self) -> u64 {
+        let Mesh { node_tags, point_tags, line_tags, triangle_tags, quad_tags, tetrahedron_tags, .. } = self;
+        let all = [node_tags, point_tags, line_tags, triangle_tags, quad_tags, tetrahedron_tags];
+        all.into_iter().flatten().copied().max().unwrap_or(0)
+    }
+
     /// Number of tetrahedra of the whole mesh.
     pub fn tetrahedron_count(&self) -> usize {
         self.whole.as_ref().map_or(self.tetrahedra.len(), |whole| whole.tetrahedra)
@@ -177,6 +184,13 @@ impl Mesh {
             self.whole.as_ref().map_or(group.tetrahedra.len(), |whole| whole.groups[index].0)
         };
         self.groups.iter().enumerate().filter(|(_, group)| group.name == name).map(of_group).sum()
+    }
+
+    /// Whether all nodes lie in one plane z = constant.
+    pub(crate) fn is_in_plane(&self) -> bool {
+        let (low, high) = self.bounding_box();
+        let extent = high - low;
+        extent.z <= 1e-9 * extent.x.max(extent.y)
     }
 
     /// Lowest and highest coordinates; zeros for a mesh without nodes.

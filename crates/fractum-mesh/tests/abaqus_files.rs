@@ -61,15 +61,22 @@ fn plane_elements_have_edges_and_lose_their_mid_nodes() {
     assert_eq!((mesh.triangles.len(), mesh.group("plate")[0].triangles.len()), (2, 2));
     assert_eq!(places(&mesh, "top"), [[0, 2_000_000, 0], [2_000_000, 2_000_000, 0]]);
     assert_eq!(mesh.group("top")[0].lines.len(), 1);
-    assert_eq!(mesh.group_nodes("base").len(), 3, "a node of a set is kept, though no element has it");
-    for said in ["1 of type SPRINGA", "2 triangles of higher order", "clockwise", "\"springs\""] {
+    assert_eq!(mesh.group_nodes("base").len(), 2, "mid nodes leave with their elements' order");
+    assert_eq!(mesh.nodes.len(), 4);
+    for said in [
+        "5 mid node(s) left out of sets of nodes",
+        "1 of type SPRINGA",
+        "2 triangles of higher order",
+        "clockwise",
+        "\"springs\"",
+    ] {
         assert!(mesh.notices.iter().any(|notice| notice.contains(said)), "{said}: {:?}", mesh.notices);
     }
 }
 
 #[test]
 fn labels_that_nothing_bears_are_told_with_what_lists_them() {
-    let flat = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT, TYPE=S3\n1,1,2,3\n";
+    let flat = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT, TYPE=CPS3\n1,1,2,3\n";
     let sets = "*ELSET, ELSET=e\n1, 8, 9\n*NSET, NSET=n\n1, 7\n*NSET, NSET=range, GENERATE\n1, 9, 1\n";
     let mesh = read_inp(format!("{flat}{sets}*SURFACE, NAME=s\n1, S1\n5, S1\n").as_bytes()).unwrap();
     for said in [
@@ -89,11 +96,12 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
     let triangle = "*ELEMENT, TYPE=S3\n1,1,2,3\n";
     let after = |more: &str| format!("{flat}{triangle}{more}");
     let cases = [
-        ("*HEADING\nnothing\n".to_owned(), "line 3: the file ends here; expected at least one *ELEMENT"),
+        ("*HEADING\nnothing\n".to_owned(), "line 3: the file has no elements; expected at least one *ELEMENT"),
         (
-            format!("{flat}*ELEMENT, TYPE=C3D8R\n"),
-            "line 5: *ELEMENT gives elements of type C3D8R, which are hexahedra; mesh with tetrahedra",
+            format!("{flat}*ELEMENT, TYPE=MASS\n1,1\n"),
+            "line 7: all elements are of types that are no bodies (MASS); expected at least one *ELEMENT",
         ),
+        (after("*NGEN, NSET=n\n"), "line 7: *NGEN gives nodes or elements by a rule; write them out"),
         (format!("{flat}*ELEMENT\n1,1,2,3\n"), "line 5: found *ELEMENT without TYPE; expected TYPE=NAME on that line"),
         (
             format!("{flat}*ELEMENT, TYPE=S3\n1,1,2\n"),
@@ -111,18 +119,16 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
             "line 8: found `b` in set \"a\"; expected a label, or the name of a set that is defined above",
         ),
         (after("*ELSET, ELSET=a, GENERATE\n1\n"), "line 8: found `1`; expected first, last and step"),
-        (after("*SURFACE, NAME=s\n1, S4\n"), "line 7: surface \"s\" takes face `S4` of element 1, a triangle"),
-        (after("*PART, NAME=a\n*PART, NAME=b\n"), "line 8: *PART gives a second part; export one part"),
-        (after("*INSTANCE, NAME=a\n1, 0, 0\n"), "line 8: found `1, 0, 0`, by which an instance is moved or turned"),
+        (after("*SURFACE, NAME=s\n1, S6\n"), "line 7: surface \"s\" takes face `S6` of element 1, a triangle"),
+        (
+            after("*INSTANCE, NAME=a\n1, 0, y\n"),
+            "line 8: found `1, 0, y`; expected three numbers that move an instance",
+        ),
+        (
+            after("*INSTANCE, NAME=a\n0, 0, 0\n0,0,0, 0,0,0, 90\n"),
+            "line 9: found `0, 0, 0, 0, 0, 0, 90`; expected three",
+        ),
         (after("*INCLUDE, INPUT=nodes.inp\n"), "line 7: *INCLUDE gives a further file; put its lines here"),
-        (
-            after("*NSET, NSET=Set-1\n1\n*END PART\n*ASSEMBLY, NAME=a\n*NSET, NSET=set-1, INSTANCE=i\n2\n"),
-            "line 11: set \"set-1\" of the assembly has the name of one of the part; rename one of them",
-        ),
-        (
-            after("*ASSEMBLY, NAME=a\n*NODE\n1, 0, 0\n"),
-            "line 8: *NODE gives nodes of the assembly, such as reference points",
-        ),
         (format!("\u{feff}{flat}{triangle}"), ""),
         (format!("{flat}*ELEMENT, TYPE=S3,\n** corners\nELSET=e\n1,1,2,3\n*ELSET, ELSET=f\ne\n"), ""),
         (after("*END PART,\n*ELSET, ELSET=a\nb\n"), "line 9: found `b` in set \"a\""),
@@ -134,15 +140,9 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
             ),
             "",
         ),
-        (
-            after("*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n*END INSTANCE\n*NODE\n1, 0, 0\n"),
-            "line 10: *NODE gives nodes of the assembly, such as reference points",
-        ),
+        // A reference point has a label of the assembly.
+        (after("*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n*END INSTANCE\n*NODE\n1, 0, 0\n"), ""),
         (after("*NSET, NSET=_Picked, INTERNAL\n1\n*ASSEMBLY, NAME=a\n*NSET, NSET=_Picked, INTERNAL\n2\n"), ""),
-        (
-            after("*NSET, NSET=_Picked\n1\n*ASSEMBLY, NAME=a\n*NSET, NSET=_Picked, INTERNAL\n2\n"),
-            "line 10: set \"_Picked\" of the assembly has the name of one of the part",
-        ),
     ];
     for (text, says) in cases {
         match read_mesh(text.as_bytes()) {
@@ -150,6 +150,13 @@ fn what_cannot_be_used_is_refused_with_its_line_and_the_remedy() {
             Err(error) => assert!(!says.is_empty() && error.to_string().starts_with(says), "{error}\n{text}"),
         }
     }
+}
+
+#[test]
+fn beams_of_second_order_go_from_end_to_end() {
+    let text = "*NODE\n1,0,0\n2,2,0\n3,1,0\n4,0,1\n*ELEMENT, TYPE=B32\n1,1,3,2\n*ELEMENT, TYPE=CPS3\n2,1,2,4\n";
+    let mesh = read_inp(text.as_bytes()).unwrap();
+    assert_eq!((mesh.lines.as_slice(), mesh.nodes.len()), (&[[0, 1]][..], 3));
 }
 
 #[test]

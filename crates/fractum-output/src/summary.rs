@@ -68,6 +68,9 @@ pub struct Summary {
     pub modes: Option<NaturalVibrations>,
     /// Sizes at the end.
     pub counts: Counts,
+    /// What reading the mesh changed in it, as elements that were split.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub mesh: Vec<String>,
     /// What is doubtful in the case, and what the run found while it went.
     #[serde(default)]
     pub warnings: Vec<Warning>,

@@ -64,7 +64,7 @@ pub mod terminal;
 pub mod verify;
 
 pub use error::{ExitCode, Failure};
-pub use input::{Input, cache_of_user, load, mesh_of_case};
+pub use input::{Input, cache_of_user, gather_mesh, load, mesh_of_case};
 pub use process::interrupt::{clear_interrupt, interrupt, is_interrupted};
 pub use process::ranks::Ranks;
 #[cfg(feature = "report")]

@@ -126,6 +126,8 @@ struct About {
     case_hash: u128,
     origin: Origin,
     plan: Plan,
+    /// What reading the mesh changed in it.
+    mesh: Vec<String>,
 }
 
 /// The last checkpoint of this run.

@@ -10,7 +10,7 @@ use fractum_mesh::{Mesh, MshFormat};
 use fractum_math::Vec3;
 
 use crate::common::{Workplace, bar, mesh_bytes};
-use crate::warnings::{BAR, halves, quads};
+use crate::warnings::{BAR, halves};
 
 const MISTAKES: &str = include_str!("wrong/meant.toml");
 
@@ -59,7 +59,6 @@ fn mesh(name: &str) -> Mesh {
     match name {
         "bar" => bar(),
         "plate" => plate(),
-        "quads" => quads(plate()),
         "halves" => halves(bar(), false),
         "thousandfold" => scaled(1e3, 0.0),
         "far" => scaled(1.0, 1e8),

@@ -7,6 +7,7 @@ mod bonded;
 mod book;
 mod breaking;
 mod corpus;
+mod doors;
 mod drive;
 mod equilibrium;
 mod fragments;

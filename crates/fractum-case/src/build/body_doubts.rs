@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use fractum_math::{Vec3, connected};
-use fractum_mesh::{Group, Mesh, topology};
+use fractum_mesh::Mesh;
+use fractum_mesh::bodies::{SLENDER, SolidElements};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 
@@ -12,12 +13,6 @@ use crate::{Diagnostic, Place, Spanned};
 
 /// Passages of a wave through a body after which it should be held.
 const PASSAGES: f64 = 10.0;
-/// Elements per node below which a body may have only two elements through its thickness: in space, in the plane.
-const FEW: [f64; 2] = [4.6, 1.5];
-/// Largest over smallest extent above which a body is slender.
-const SLENDER: f64 = 4.0;
-/// Share of the elements that lie at the surface where there are two through the thickness.
-const AT_SURFACE: f64 = 0.98;
 
 /// A solid body of the case with its nodes in the mesh, ascending.
 pub(super) struct Own<'a> {
@@ -41,17 +36,18 @@ pub(super) fn pieces(mesh: &Mesh, bodies: &[Own]) -> Vec<u32> {
     connected(bodies.len(), shared.map(|pair| [pair[0].1, pair[1].1]))
 }
 
-/// The nodes of the elements of a body.
-///
-/// - `of`: the elements of a group, in the list `all`
-pub(super) fn elements<const N: usize>(
-    mesh: &Mesh,
-    body: &Own,
-    of: fn(&Group) -> &Vec<u32>,
-    all: &[[u32; N]],
-) -> Vec<[u32; N]> {
-    let groups = mesh.group(&body.solid.group.value);
-    groups.iter().flat_map(|group| of(group)).map(|&element| all[element as usize]).collect()
+impl Own<'_> {
+    /// Its elements.
+    pub(super) fn elements(&self, mesh: &Mesh) -> SolidElements {
+        let groups = mesh.group(&self.solid.group.value);
+        if self.plane {
+            let members = groups.iter().flat_map(|group| &group.triangles);
+            SolidElements::Triangles(members.map(|&element| mesh.triangles[element as usize]).collect())
+        } else {
+            let members = groups.iter().flat_map(|group| &group.tetrahedra);
+            SolidElements::Tetrahedra(members.map(|&element| mesh.tetrahedra[element as usize]).collect())
+        }
+    }
 }
 
 /// What moves or loads a piece at one place.
@@ -134,45 +130,13 @@ pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
     if mesh.whole.is_some() || body.nodes.is_empty() || !is_bent(case, mesh, body) {
         return None;
     }
-    let (boundary, shares) = if body.plane {
-        let elements = elements(mesh, body, |group| &group.triangles, &mesh.triangles);
-        if elements.len() as f64 > FEW[1] * body.nodes.len() as f64 {
-            return None;
-        }
-        let sides = topology::boundary_of_triangles(&elements);
-        let boundary = marked(mesh, sides.iter().flat_map(|side| side.nodes));
-        let shares = within(&elements, &boundary);
-        (boundary, shares)
-    } else {
-        let elements = elements(mesh, body, |group| &group.tetrahedra, &mesh.tetrahedra);
-        if elements.len() as f64 > FEW[0] * body.nodes.len() as f64 {
-            return None;
-        }
-        let facets = topology::boundary_of_tetrahedra(&elements);
-        let boundary = marked(mesh, facets.iter().flat_map(|facet| facet.nodes));
-        let shares = within(&elements, &boundary);
-        (boundary, shares)
+    let through = match body.elements(mesh).layers()? {
+        1 => "one element",
+        _ => "two elements",
     };
-    if shares > 1.0 - AT_SURFACE {
-        return None;
-    }
-    let inner = body.nodes.iter().any(|&node| !boundary[node as usize]);
-    let through = if inner { "two elements" } else { "one element" };
     let found = format!("= \"{}\": it has {through} through its thickness, and is bent", body.name.value);
     let note = Diagnostic::warning(Code::ThinMesh, &body.name.place, found);
     Some(note.remedy("linear elements are too stiff in bending: take three through the thickness, better six"))
-}
-
-fn marked(mesh: &Mesh, nodes: impl Iterator<Item = u32>) -> Vec<bool> {
-    let mut marked = vec![false; mesh.nodes.len()];
-    nodes.for_each(|node| marked[node as usize] = true);
-    marked
-}
-
-/// Share of the elements that have no node on the boundary.
-fn within<const N: usize>(elements: &[[u32; N]], boundary: &[bool]) -> f64 {
-    let inner = elements.iter().filter(|nodes| nodes.iter().all(|&node| !boundary[node as usize])).count();
-    inner as f64 / elements.len().max(1) as f64
 }
 
 /// Whether a slender body is moved or loaded across: along an axis of the case along which it is thin.

@@ -8,12 +8,10 @@ use fractum_output::number::{percent, quantity};
 use fractum_output::warning::Code;
 use fractum_scene::ContactParameters;
 
-use super::body_doubts::{Own, elements, extent, pieces};
+use super::body_doubts::{Own, extent, pieces};
 use crate::Diagnostic;
 use crate::model::{Body, BodyKind, Case, Motion, RigidBody, RigidShape, SolverKind, Support};
 
-/// Elements of a body that are looked for in another one.
-const SAMPLE: usize = 2000;
 /// Instants at which the motion of a tool is looked at.
 const LOOKS: u32 = 1000;
 
@@ -94,7 +92,8 @@ pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own], is_gone: impl Fn(&Own) ->
         let others = bodies[..index].iter().enumerate().filter(|(_, own)| !is_gone(own));
         for (_, first) in others.filter(|(before, _)| !apart(*before, index)) {
             // A body of few large elements may hold none of the middles of the other.
-            let shares = [(second, first), (first, second)].map(|(own, other)| within(mesh, own, other));
+            let shares = [(second, first), (first, second)]
+                .map(|(own, other)| own.elements(mesh).share_within(&mesh.nodes, &other.elements(mesh)));
             let Some((share, of)) = shares.into_iter().zip([second, first]).find(|(share, _)| *share > 0.0) else {
                 continue;
             };
@@ -110,65 +109,6 @@ pub(super) fn overlapping(mesh: &Mesh, bodies: &[Own], is_gone: impl Fn(&Own) ->
         }
     }
     doubts
-}
-
-/// Share of the elements of a body whose middle lies in an element of another one; of many a sample is taken.
-fn within(mesh: &Mesh, own: &Own, other: &Own) -> f64 {
-    match (own.plane, other.plane) {
-        (true, true) => {
-            let of = |body: &Own| elements(mesh, body, |group| &group.triangles, &mesh.triangles);
-            share_within(mesh, (own, &of(own)), (other, &of(other)))
-        }
-        (false, false) => {
-            let of = |body: &Own| elements(mesh, body, |group| &group.tetrahedra, &mesh.tetrahedra);
-            share_within(mesh, (own, &of(own)), (other, &of(other)))
-        }
-        _ => 0.0,
-    }
-}
-
-fn share_within<const N: usize>(
-    mesh: &Mesh,
-    (own, elements): (&Own, &[[u32; N]]),
-    (other, others): (&Own, &[[u32; N]]),
-) -> f64 {
-    let [(low, high), (from, to)] = [own, other].map(|body| extent(mesh, std::slice::from_ref(body)));
-    let (low, high) = (low.sup(&from), high.inf(&to));
-    let corners = |nodes: &[u32; N]| nodes.map(|node| mesh.nodes[node as usize]);
-    let inside = |x: &Vec3| (0..N - 1).all(|axis| low[axis] < x[axis] && x[axis] < high[axis]);
-    let middles = elements.iter().map(|nodes| corners(nodes).iter().sum::<Vec3>() / N as f64).filter(inside);
-    let mut middles: Vec<Vec3> = middles.collect();
-    let count = middles.len();
-    let stride = count.div_ceil(SAMPLE).max(1);
-    middles = middles.into_iter().step_by(stride).collect();
-    middles.sort_unstable_by(|a, b| a.x.total_cmp(&b.x));
-    let mut found = vec![false; middles.len()];
-    for corners in others.iter().map(corners) {
-        let [first, last] =
-            corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x.x), h.max(x.x)]);
-        let begin = middles.partition_point(|x| x.x < first);
-        let near = middles[begin..].iter().take_while(|x| x.x <= last).enumerate();
-        near.filter(|(_, x)| holds(&corners, x)).for_each(|(at, _)| found[begin + at] = true);
-    }
-    let looked = middles.len().max(1) as f64;
-    found.into_iter().filter(|found| *found).count() as f64 / looked * count as f64 / elements.len().max(1) as f64
-}
-
-/// Whether a triangle or a tetrahedron holds a point.
-fn holds<const N: usize>(corners: &[Vec3; N], x: &Vec3) -> bool {
-    let size = |corners: &[Vec3; N]| {
-        let [a, b] = [1, 2].map(|corner| corners[corner] - corners[0]);
-        let across = if N == 3 { Vec3::z() } else { corners[N - 1] - corners[0] };
-        a.cross(&b).dot(&across)
-    };
-    let whole = size(corners);
-    // A place on a face belongs to both elements.
-    let inside = |corner: usize| {
-        let mut with = *corners;
-        with[corner] = *x;
-        size(&with) * whole >= 0.0
-    };
-    whole != 0.0 && (0..N).all(inside)
 }
 
 /// Tools that are moved, and meet nothing on their way.

@@ -18,7 +18,6 @@ const MOST_STEPS: f64 = 1e15;
 /// Checks what case and mesh tell by themselves.
 pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_groups(context);
-    check_quadrilaterals(context);
     check_particle_sets(context);
     check_time_functions(context);
     check_bonded_statics(context);
@@ -104,23 +103,6 @@ fn has_several_bodies(context: &Context<'_>) -> bool {
     let dimension = if solid { 3 } else { 2 };
     let groups = context.mesh.groups.iter();
     groups.filter(|group| group.dimension == dimension && group.name != WHOLE_MESH).count() > 1
-}
-
-/// Plane bodies are of triangles alone.
-fn check_quadrilaterals(context: &mut Context<'_>) {
-    for body in &context.case.bodies {
-        let BodyKind::Solid(solid) = &body.kind else { continue };
-        let groups = context.mesh.group(&solid.group.value);
-        let [quads, triangles, tetrahedra] = groups.iter().fold([0; 3], |[quads, triangles, tetrahedra], group| {
-            [quads + group.quads.len(), triangles + group.triangles.len(), tetrahedra + group.tetrahedra.len()]
-        });
-        if quads > 0 && tetrahedra == 0 && context.mesh.whole.is_none() {
-            let all = quads + triangles;
-            let found = format!("= \"{}\": {quads} of its {all} elements are quadrilaterals", solid.group.value);
-            let error = Diagnostic::error(&solid.group.place, found).expected("triangles");
-            context.diagnostics.push(error.remedy("mesh it without recombination (Mesh.RecombineAll = 0 in Gmsh)"));
-        }
-    }
 }
 
 /// Sets of particles must be walls of their bodies or named there; a packing made before tells its walls only when

@@ -1,10 +1,11 @@
 //! From what a file defines to a raw mesh whose groups are its sets.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use fractum_math::Ragged;
 
 use super::element::{self, Face};
+use super::instance::{Instances, Scope};
 use super::read::{Deck, Faced, Surface};
 use super::sets::{Sets, unknown_labels};
 use crate::mesh::list;
@@ -21,22 +22,44 @@ pub(super) fn raw(mut deck: Deck, bytes: &[u8]) -> Result<Raw, Fault> {
     builder.raw.node_tags = std::mem::take(&mut deck.node_tags);
     builder.raw.nodes = std::mem::take(&mut deck.nodes);
     builder.raw.node_blocks = std::mem::take(&mut deck.node_blocks);
+    builder.keep_last_places();
     let elements = labels(deck.elements.iter().map(|element| element.tag));
     let nodes = labels(builder.raw.node_tags.iter().copied());
-    let element_sets = deck.element_sets.resolve(&elements)?;
-    let node_sets = deck.node_sets.resolve(&nodes)?;
+    let element_sets = deck.element_sets.resolve(&elements, |_| Vec::new())?;
+    let node_sets = deck.node_sets.resolve(&nodes, |set| nodes_of(&deck, &element_sets[set], &nodes))?;
     builder.raw.notices.extend(deck.element_sets.unknown(&elements, "element"));
     builder.raw.notices.extend(deck.node_sets.unknown(&nodes, "node"));
     builder.raw.notices.extend(deck.surfaces.iter().filter_map(|surface| surface.unknown(&elements)));
 
-    let groups = builder.groups(&deck.element_sets, "");
+    let groups = builder.groups(&deck.element_sets, &deck.instances, "");
     builder.add_elements(&deck, &element_sets, &groups);
-    for surface in &deck.surfaces {
-        builder.add_surface(surface, &deck, &elements, &element_sets)?;
+    let surfaces: Vec<&Surface> = deck.surfaces.iter().filter(|surface| !surface.internal).collect();
+    let shown: Vec<(&str, Scope)> = surfaces.iter().map(|surface| (surface.name.as_str(), surface.scope)).collect();
+    for (surface, name) in surfaces.iter().zip(names(&shown, &deck.instances)) {
+        builder.add_surface(surface, &name, &deck, &elements, &element_sets)?;
     }
-    let groups = builder.groups(&deck.node_sets, "-nodes");
+    builder.leave_out(std::mem::take(&mut deck.mid_nodes));
+    let groups = builder.groups(&deck.node_sets, &deck.instances, "-nodes");
     builder.add_points(&deck.node_sets, &node_sets, &groups);
     builder.finish(bytes)
+}
+
+/// Indices of the corners of elements.
+fn nodes_of(deck: &Deck, elements: &[u32], nodes: &[(u64, u32)]) -> Vec<u32> {
+    let corners = elements.iter().flat_map(|&element| deck.elements[element as usize].corners(&deck.corners));
+    let index = |label: &u64| nodes.binary_search_by_key(label, |(known, _)| *known).ok().map(|at| nodes[at].1);
+    corners.filter_map(index).collect()
+}
+
+/// The names of what instances define: with that of the instance where another one, or the assembly, has the same name.
+fn names(all: &[(&str, Scope)], instances: &Instances) -> Vec<String> {
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    all.iter().for_each(|(name, _)| *counts.entry(name.to_uppercase()).or_default() += 1);
+    let own = |&(name, scope): &(&str, Scope)| match scope {
+        Some(instance) if counts[&name.to_uppercase()] > 1 => format!("{}.{name}", instances.list[instance].name),
+        _ => name.to_owned(),
+    };
+    all.iter().map(own).collect()
 }
 
 /// Labels with the index of what bears each, ascending.
@@ -60,7 +83,18 @@ fn check_nodes(deck: &Deck) -> Result<(), Fault> {
 
 fn notices(deck: &Deck) -> Vec<String> {
     let left_out: Vec<String> = deck.left_out.iter().map(|(name, count)| format!("{count} of type {name}")).collect();
-    if left_out.is_empty() { Vec::new() } else { vec![format!("elements left out: {}", list(&left_out))] }
+    let mut notices = Vec::new();
+    if !left_out.is_empty() {
+        notices.push(format!("elements left out: {}", list(&left_out)));
+    }
+    if !deck.axisymmetric.is_empty() {
+        let types: Vec<String> = deck.axisymmetric.iter().cloned().collect();
+        notices.push(format!(
+            "axisymmetric elements ({}) are read as a plane mesh, which fractum computes as a plate",
+            list(&types)
+        ));
+    }
+    notices
 }
 
 impl Surface {
@@ -75,17 +109,51 @@ impl Surface {
 }
 
 impl Builder {
+    /// Of nodes that are defined again the last place counts.
+    fn keep_last_places(&mut self) {
+        let all = labels(self.raw.node_tags.iter().copied());
+        let mut again: Vec<u32> = Vec::new();
+        for run in all.chunk_by(|a, b| a.0 == b.0).filter(|run| run.len() > 1) {
+            let (first, last) = (run[0].1 as usize, run[run.len() - 1].1 as usize);
+            self.raw.nodes[first] = self.raw.nodes[last];
+            again.extend(run[1..].iter().map(|&(_, index)| index));
+        }
+        if again.is_empty() {
+            return;
+        }
+        again.sort_unstable();
+        let is_again = |index: usize| again.binary_search(&(index as u32)).is_ok();
+        let mut index = 0..;
+        self.raw.nodes.retain(|_| !is_again(index.next().unwrap_or(0)));
+        let mut index = 0..;
+        self.raw.node_tags.retain(|_| !is_again(index.next().unwrap_or(0)));
+        self.raw.node_blocks.retain(|&(first, _)| !is_again(first));
+        for (first, _) in &mut self.raw.node_blocks {
+            *first -= again.partition_point(|&gone| (gone as usize) < *first);
+        }
+        self.raw.notices.push(format!("{} node(s) are defined again: the last place counts", again.len()));
+    }
+
     /// Tags of the groups of sets; none of internal ones.
     ///
     /// - `ending`: what a name gets where another kind of set has it
-    fn groups(&mut self, sets: &Sets, ending: &str) -> Vec<Option<i32>> {
-        sets.list.iter().map(|set| (!set.internal).then(|| self.group(&set.name, set.at, ending))).collect()
+    fn groups(&mut self, sets: &Sets, instances: &Instances, ending: &str) -> Vec<Option<i32>> {
+        let shown: Vec<(&str, Scope)> =
+            sets.list.iter().filter(|set| !set.internal).map(|set| (set.name.as_str(), set.scope)).collect();
+        let mut names = names(&shown, instances).into_iter();
+        let mut tag = |at: usize| names.next().map(|name| self.group(&name, at, ending));
+        sets.list.iter().map(|set| if set.internal { None } else { tag(set.at) }).collect()
     }
 
     fn add_elements(&mut self, deck: &Deck, sets: &[Vec<u32>], groups: &[Option<i32>]) {
         let of_elements = Ragged::inverse(deck.elements.len(), sets.iter().map(Vec::as_slice));
+        let instances: Vec<i32> = match deck.instances.list.as_slice() {
+            [] | [_] => Vec::new(),
+            several => several.iter().map(|instance| self.group(&instance.name, 0, "-instance")).collect(),
+        };
         for (element, sets) in deck.elements.iter().zip(of_elements.rows()) {
-            let groups = sets.iter().filter_map(|&set| groups[set as usize]).collect();
+            let of_sets = sets.iter().filter_map(|&set| groups[set as usize]);
+            let groups = of_sets.chain(element.scope.and_then(|instance| instances.get(instance)).copied()).collect();
             self.push(element.kind, groups, element.at, element.tag, element.corners(&deck.corners));
         }
     }
@@ -93,15 +161,14 @@ impl Builder {
     fn add_surface(
         &mut self,
         surface: &Surface,
+        name: &str,
         deck: &Deck,
         labels: &[(u64, u32)],
         sets: &[Vec<u32>],
     ) -> Result<(), Fault> {
-        if surface.internal {
-            return Ok(());
-        }
-        let group = self.group(&surface.name, surface.at, "-surface");
+        let group = self.group(name, surface.at, "-surface");
         let mut known: BTreeSet<Vec<u64>> = BTreeSet::new();
+        let mut beams = 0;
         for (faced, face) in &surface.faces {
             let one: Vec<u32>;
             let members: &[u32] = match faced {
@@ -114,10 +181,14 @@ impl Builder {
             for &member in members {
                 let element = &deck.elements[member as usize];
                 let corners = element.corners(&deck.corners);
-                let Some(found) = element::face(element.shape(), face) else {
+                if element.shape() == Shape::Line {
+                    beams += 1;
+                    continue;
+                }
+                let Some(found) = element::face(element.shape(), element.shell, face) else {
                     let message = format!(
                         "surface \"{}\" takes face `{face}` of element {}, a {}, which has none of that name; \
-                         expected S1 to S4 of tetrahedra, S1 to S3, SPOS or SNEG of triangles",
+                         expected S1 to S4 of tetrahedra, S1 to S6 of hexahedra, S1 to S3 of triangles, SPOS, SNEG, S3 to S6 of shells",
                         surface.name,
                         element.tag,
                         element.shape().singular()
@@ -128,16 +199,24 @@ impl Builder {
                     Face::Whole => corners.to_vec(),
                     Face::Side(side) => side.iter().map(|&corner| corners[corner]).collect(),
                 };
-                let shape = match (corners.len(), element.shape()) {
-                    (2, _) => Shape::Line,
-                    (3, _) => Shape::Triangle,
+                let shape = match corners.len() {
+                    1 => Shape::Point,
+                    2 => Shape::Line,
+                    3 => Shape::Triangle,
                     _ => Shape::Quad,
                 };
+                // A face of an element with corners in one node may be a line or a point.
+                if corners.iter().collect::<BTreeSet<_>>().len() < corners.len().min(3) {
+                    continue;
+                }
                 if known.insert(corners.clone()) {
                     let kind = ElementType { shape, nodes: corners.len() };
                     self.push(kind, vec![group], surface.at, self.next_tag(), &corners);
                 }
             }
+        }
+        if beams > 0 {
+            self.raw.notices.push(format!("surface \"{name}\": faces of {beams} line(s) left out"));
         }
         Ok(())
     }

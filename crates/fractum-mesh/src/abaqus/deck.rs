@@ -69,6 +69,13 @@ pub(super) fn next<'a>(cursor: &mut Cursor<'a>) -> Result<Option<Line<'a>>, Faul
     Ok(None)
 }
 
+/// Whether a line has that keyword, which is given in capitals and without blanks.
+pub(super) fn is_keyword(line: &[u8], name: &str) -> bool {
+    let Some(text) = line.strip_prefix(b"*") else { return false };
+    let word = text.split(|&byte| byte == b',').next().unwrap_or_default();
+    word.iter().filter(|byte| !byte.is_ascii_whitespace()).map(u8::to_ascii_uppercase).eq(name.bytes())
+}
+
 fn text(at: usize, line: &[u8]) -> Result<&str, Fault> {
     std::str::from_utf8(line).map_err(|_| Fault::unexpected(at, quote(line), "text in UTF-8"))
 }

@@ -1,15 +1,18 @@
 //! From keywords to what they define.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 use fractum_math::Vec3;
 
 use super::deck::{self, Keyword, Line};
 use super::element;
-use super::sets::{Sets, label};
+use super::instance::{Instances, MOST_READ, Motion, Scope};
+use super::sets::Sets;
+use crate::mesh::list;
 use crate::tagged::cursor::Cursor;
 use crate::tagged::element_type::{ElementType, Shape};
-use crate::tagged::error::{Fault, Problem};
+use crate::tagged::error::Fault;
 use crate::tagged::raw::Records;
 
 /// What a file defines.
@@ -27,10 +30,18 @@ pub(super) struct Deck {
     pub(super) surfaces: Vec<Surface>,
     /// Types of elements that are left out, with their numbers.
     pub(super) left_out: BTreeMap<String, usize>,
-    parts: usize,
-    instances: usize,
-    /// Whether the lines are those of the assembly.
-    in_assembly: bool,
+    /// Types of elements that turn about an axis.
+    pub(super) axisymmetric: BTreeSet<String>,
+    /// Labels of nodes that elements of higher order have between their corners.
+    pub(super) mid_nodes: Vec<u64>,
+    /// Instances of parts.
+    pub(super) instances: Instances,
+    /// Where the lines of each part stand, by its name in capitals.
+    parts: BTreeMap<String, Range<usize>>,
+    /// Instance whose lines these are; none of the assembly and of files without parts.
+    scope: Scope,
+    /// Highest label of a node or element.
+    highest: u64,
 }
 
 pub(super) struct Element {
@@ -39,11 +50,14 @@ pub(super) struct Element {
     /// Index of its first corner.
     pub(super) first_corner: usize,
     pub(super) at: usize,
+    pub(super) scope: Scope,
+    pub(super) shell: bool,
 }
 
 /// A surface of element faces.
 pub(super) struct Surface {
     pub(super) name: String,
+    pub(super) scope: Scope,
     pub(super) at: usize,
     pub(super) internal: bool,
     /// Element or set of elements, and the label of the face.
@@ -57,12 +71,23 @@ pub(super) enum Faced {
 
 /// What the data lines after a keyword are.
 enum Block {
-    Nodes { set: Option<usize> },
-    Elements { kind: Option<ElementType>, name: String, set: Option<usize> },
-    Set { of_nodes: bool, set: usize, generate: bool },
+    Nodes {
+        set: Option<usize>,
+    },
+    Elements {
+        kind: Option<ElementType>,
+        name: String,
+        set: Option<usize>,
+    },
+    /// - `scope`: instance whose labels these are
+    Set {
+        of_nodes: bool,
+        set: usize,
+        scope: Scope,
+        generate: bool,
+    },
     Surface(usize),
     SurfaceOfNodes(usize),
-    Instance,
     Other,
 }
 
@@ -71,92 +96,143 @@ impl Deck {
         let mut cursor = Cursor::new(bytes);
         cursor.skip_byte_order_mark();
         let mut deck = Deck::default();
-        let mut block = Block::Other;
-        while let Some(line) = deck::next(&mut cursor)? {
-            match line {
-                Line::Keyword(keyword) => block = deck.open(&keyword)?,
-                Line::Data { at, fields } => deck.data(&mut cursor, &block, at, &fields)?,
+        deck.lines(&mut cursor)?;
+        if deck.instances.list.is_empty() {
+            // A file of parts alone.
+            let parts = std::mem::take(&mut deck.parts);
+            for (name, lines) in &parts {
+                if parts.len() > 1 {
+                    deck.scope = Some(deck.instances.open(name, Motion::default(), deck.highest));
+                }
+                deck.lines(&mut Cursor { bytes: &bytes[..lines.end], at: lines.start })?;
             }
         }
         if deck.elements.is_empty() {
-            let expected = "at least one *ELEMENT of tetrahedra or triangles";
-            return Err(Fault { at: bytes.len(), problem: Problem::Truncated { expected: expected.to_owned() } });
+            return Err(deck.without_elements(bytes));
         }
         Ok(deck)
     }
 
-    fn open(&mut self, keyword: &Keyword) -> Result<Block, Fault> {
-        let internal = keyword.get("INTERNAL").is_some();
-        Ok(match keyword.name.as_str() {
-            "NODE" if self.in_assembly => {
-                let found = "nodes of the assembly, such as reference points";
-                return Err(unsupported(keyword, found, "export one flat file without parts"));
+    /// What to say of a file without elements that are read.
+    fn without_elements(&self, bytes: &[u8]) -> Fault {
+        let expected = "at least one *ELEMENT of a solid, such as C3D4, C3D8 or CPS4";
+        if self.left_out.is_empty() {
+            return Fault::unsupported(bytes.len(), format!("the file has no elements; expected {expected}"));
+        }
+        let types: Vec<String> = self.left_out.keys().cloned().collect();
+        let message = format!("all elements are of types that are no bodies ({}); expected {expected}", list(&types));
+        Fault::unsupported(bytes.len(), message)
+    }
+
+    fn lines(&mut self, cursor: &mut Cursor) -> Result<(), Fault> {
+        let mut block = Block::Other;
+        while let Some(line) = deck::next(cursor)? {
+            match line {
+                Line::Keyword(keyword) => block = self.open(cursor, &keyword)?,
+                Line::Data { at, fields } => self.data(cursor, &block, at, &fields)?,
             }
+        }
+        Ok(())
+    }
+
+    fn open(&mut self, cursor: &mut Cursor, keyword: &Keyword) -> Result<Block, Fault> {
+        let internal = keyword.get("INTERNAL").is_some();
+        let scope = self.scope;
+        Ok(match keyword.name.as_str() {
             "NODE" => {
                 if keyword.get("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) {
                     return Err(unsupported(keyword, "coordinates about an axis", "write rectangular ones"));
                 }
-                let set =
-                    keyword.get("NSET").map(|name| self.node_sets.open(name, keyword.at, internal, self.in_assembly));
-                Block::Nodes { set: set.transpose()? }
+                self.instances.set_apart(scope, self.highest);
+                let set = keyword.get("NSET").map(|name| self.node_sets.open(name, keyword.at, internal, scope));
+                Block::Nodes { set }
             }
             "ELEMENT" => {
+                self.instances.set_apart(scope, self.highest);
                 let name = keyword.require("TYPE")?.to_uppercase();
-                let kind = element::of_name(&name);
-                if let Some(kind) = kind.filter(|kind| kind.shape.corners() == 0) {
-                    let found = format!("elements of type {name}, which are {}", kind.shape.plural());
-                    return Err(unsupported(keyword, &found, "mesh with tetrahedra (C3D4, C3D10)"));
+                if element::is_axisymmetric(&name) {
+                    self.axisymmetric.insert(name.clone());
                 }
-                let open = |name| self.element_sets.open(name, keyword.at, internal, self.in_assembly);
-                Block::Elements { kind, name, set: keyword.get("ELSET").map(open).transpose()? }
+                let open = |name| self.element_sets.open(name, keyword.at, internal, scope);
+                Block::Elements { kind: element::of_name(&name), set: keyword.get("ELSET").map(open), name }
             }
             "NSET" | "ELSET" => {
                 let of_nodes = keyword.name == "NSET";
                 let name = keyword.require(&keyword.name)?;
+                let of = keyword.get("INSTANCE").and_then(|name| self.instances.find(name)).or(scope);
+                let elements = keyword.get("ELSET").filter(|_| of_nodes);
+                let elements = elements.and_then(|name| self.element_sets.find(name, of, &self.instances));
                 let sets = if of_nodes { &mut self.node_sets } else { &mut self.element_sets };
-                let generate = keyword.get("GENERATE").is_some();
-                Block::Set { of_nodes, set: sets.open(name, keyword.at, internal, self.in_assembly)?, generate }
+                let set = sets.open(name, keyword.at, internal, scope);
+                if let Some(elements) = elements {
+                    sets.add_nodes_of(set, elements);
+                }
+                Block::Set { of_nodes, set, scope: of, generate: keyword.get("GENERATE").is_some() }
             }
             "SURFACE" => self.open_surface(keyword, internal)?,
             "PART" => {
-                self.parts += 1;
-                if self.parts > 1 {
-                    return Err(unsupported(
-                        keyword,
-                        "a second part",
-                        "export one part, or one flat file without parts",
-                    ));
+                let (from, mut to) = (cursor.at, cursor.bytes.len());
+                while let Some((at, line)) = cursor.line() {
+                    if deck::is_keyword(line, "ENDPART") {
+                        to = at;
+                        break;
+                    }
                 }
+                self.parts.insert(keyword.get("NAME").unwrap_or_default().to_uppercase(), from..to);
                 Block::Other
             }
-            "INSTANCE" => {
-                self.instances += 1;
-                if self.instances > 1 {
-                    return Err(unsupported(keyword, "a second instance", "export one flat file without parts"));
-                }
-                // The lines of an independent instance are those of its part.
-                self.in_assembly = false;
-                Block::Instance
-            }
-            "ASSEMBLY" | "ENDINSTANCE" | "ENDASSEMBLY" => {
-                self.in_assembly = keyword.name != "ENDASSEMBLY";
+            "INSTANCE" => self.instance(cursor, keyword)?,
+            "ENDINSTANCE" | "ASSEMBLY" | "ENDASSEMBLY" => {
+                self.scope = None;
                 Block::Other
             }
             "INCLUDE" => return Err(unsupported(keyword, "a further file", "put its lines here")),
             "SYSTEM" => return Err(unsupported(keyword, "another system of coordinates", "export without it")),
+            "NGEN" | "NFILL" | "NCOPY" | "NMAP" | "ELGEN" | "ELCOPY" => {
+                let found = "nodes or elements by a rule";
+                return Err(unsupported(keyword, found, "write them out, as Abaqus/CAE and most programs do"));
+            }
             _ => Block::Other,
         })
     }
 
+    /// Reads the lines of a part as those of its instance, and leaves those that the instance has itself.
+    fn instance(&mut self, cursor: &mut Cursor, keyword: &Keyword) -> Result<Block, Fault> {
+        let mut motion = Motion::default();
+        for line in 0.. {
+            let before = cursor.at;
+            let Some(Line::Data { at, fields }) = deck::next(cursor)? else {
+                cursor.at = before;
+                break;
+            };
+            motion.add(line, &fields).ok_or_else(|| {
+                let expected = "three numbers that move an instance, or seven that turn it";
+                Fault::unexpected(at, found(&fields), expected)
+            })?;
+        }
+        let part = keyword.get("PART").and_then(|part| self.parts.get(&part.to_uppercase())).cloned();
+        let length = part.as_ref().map_or(0, Range::len);
+        if !self.instances.may_read(length) {
+            let found = format!("instance {} of more than {MOST_READ} bytes of parts", self.instances.list.len() + 1);
+            return Err(unsupported(keyword, &found, "give fractum fewer of them"));
+        }
+        self.scope = Some(self.instances.open(keyword.get("NAME").unwrap_or_default(), motion, self.highest));
+        if let Some(lines) = part {
+            self.lines(&mut Cursor { bytes: &cursor.bytes[..lines.end], at: lines.start })?;
+        }
+        Ok(Block::Other)
+    }
+
     fn open_surface(&mut self, keyword: &Keyword, internal: bool) -> Result<Block, Fault> {
         let name = keyword.require("NAME")?;
+        let (at, scope) = (keyword.at, self.scope);
         let kind = keyword.get("TYPE").unwrap_or("ELEMENT").to_uppercase();
         Ok(match kind.as_str() {
             "ELEMENT" => {
-                self.surfaces.push(Surface { name: name.to_owned(), at: keyword.at, internal, faces: Vec::new() });
+                self.surfaces.push(Surface { name: name.to_owned(), scope, at, internal, faces: Vec::new() });
                 Block::Surface(self.surfaces.len() - 1)
             }
-            "NODE" => Block::SurfaceOfNodes(self.node_sets.open(name, keyword.at, internal, self.in_assembly)?),
+            "NODE" => Block::SurfaceOfNodes(self.node_sets.open_surface(name, at, internal, scope)),
             // Analytical ones are no part of the mesh.
             _ => Block::Other,
         })
@@ -166,48 +242,47 @@ impl Deck {
         match block {
             Block::Nodes { set } => self.node(*set, at, fields),
             Block::Elements { kind, name, set } => self.element(cursor, (*kind, name), *set, at, fields),
-            Block::Set { of_nodes, set, generate } => {
-                let sets = if *of_nodes { &mut self.node_sets } else { &mut self.element_sets };
+            Block::Set { of_nodes, set, scope, generate } => {
+                let Deck { node_sets, element_sets, instances, .. } = self;
+                let sets = if *of_nodes { node_sets } else { element_sets };
                 if *generate {
-                    let numbers: Vec<Option<u64>> = given(fields).map(label).collect();
-                    match numbers[..] {
-                        [Some(first), Some(last)] => sets.add_range(*set, [first, last, 1]),
-                        [Some(first), Some(last), Some(step)] => sets.add_range(*set, [first, last, step]),
+                    let label = |&field: &&str| instances.label(field, *scope);
+                    let step = fields.get(2).filter(|step| !step.is_empty()).map_or(Some(1), |step| step.parse().ok());
+                    match (fields.first().and_then(label), fields.get(1).and_then(label), step) {
+                        (Some(first), Some(last), Some(step)) => sets.add_range(*set, [first, last, step]),
                         _ => return Err(Fault::unexpected(at, found(fields), "first, last and step of a set")),
                     }
                     return Ok(());
                 }
-                given(fields).try_for_each(|field| sets.add_field(*set, at, field))
+                given(fields).try_for_each(|field| sets.add_field(*set, at, field, *scope, instances))
             }
             Block::Surface(surface) => {
                 let (of, face) = (fields[0], fields.get(1).copied().unwrap_or_default());
-                let set = || self.element_sets.find(deck::unquoted(of)).map(Faced::Set);
-                let Some(of) = label(of).map(Faced::Label).or_else(set) else {
+                let label = self.instances.label(of, self.scope).map(Faced::Label);
+                let set = || self.element_sets.find(deck::unquoted(of), self.scope, &self.instances).map(Faced::Set);
+                let Some(of) = label.or_else(set) else {
                     let expected = "an element or a set of elements that is defined above, and a face, as `part, S1`";
                     return Err(Fault::unexpected(at, found(fields), expected));
                 };
                 self.surfaces[*surface].faces.push((of, face.to_owned()));
                 Ok(())
             }
-            Block::SurfaceOfNodes(set) => self.node_sets.add_field(*set, at, fields[0]),
-            Block::Instance => {
-                let found = format!("`{}`, by which an instance is moved or turned", fields.join(", "));
-                Err(Fault::unexpected(at, found, "an instance as its part lies"))
-            }
+            Block::SurfaceOfNodes(set) => self.node_sets.add_field(*set, at, fields[0], self.scope, &self.instances),
             Block::Other => Ok(()),
         }
     }
 
     fn node(&mut self, set: Option<usize>, at: usize, fields: &[&str]) -> Result<(), Fault> {
         let wrong = || Fault::unexpected(at, found(fields), "a node: label and up to three coordinates");
-        let label = label(fields[0]).ok_or_else(wrong)?;
+        let label = self.instances.label(fields[0], self.scope).ok_or_else(wrong)?;
         let mut position = Vec3::zeros();
         for (x, field) in position.iter_mut().zip(&fields[1..]).filter(|(_, field)| !field.is_empty()) {
             *x = field.parse().ok().filter(|x: &f64| x.is_finite()).ok_or_else(wrong)?;
         }
         self.node_blocks.push((self.nodes.len(), Records { at, stride: 0 }));
         self.node_tags.push(label);
-        self.nodes.push(position);
+        self.nodes.push(self.instances.placed(position, self.scope));
+        self.highest = self.highest.max(label);
         if let Some(set) = set {
             self.node_sets.add(set, label);
         }
@@ -231,10 +306,11 @@ impl Deck {
             Fault::unexpected(at, found(fields), expected)
         };
         let mut numbers: Vec<u64> = Vec::with_capacity(kind.nodes + 1);
+        let (instances, scope) = (&self.instances, self.scope);
         let take = |numbers: &mut Vec<u64>, fields: &[&str]| {
             given(fields)
-                .try_for_each(|field| field.parse().map(|number| numbers.push(number)))
-                .map_err(|_| wrong(fields))
+                .try_for_each(|field| instances.label(field, scope).map(|number| numbers.push(number)))
+                .ok_or_else(|| wrong(fields))
         };
         take(&mut numbers, fields)?;
         while numbers.len() < kind.nodes + 1 {
@@ -244,8 +320,16 @@ impl Deck {
         if numbers.len() > kind.nodes + 1 {
             return Err(wrong(fields));
         }
-        self.elements.push(Element { tag: numbers[0], kind, first_corner: self.corners.len(), at });
-        self.corners.extend_from_slice(&numbers[1..=kind.shape.corners()]);
+        let (first_corner, shell) = (self.corners.len(), element::is_shell(name));
+        self.elements.push(Element { tag: numbers[0], kind, first_corner, at, scope, shell });
+        if kind.shape == Shape::Line {
+            // The last node is the other end; those between come before it.
+            numbers.swap(2, kind.nodes);
+        }
+        let (corners, mid_nodes) = numbers[1..].split_at(kind.shape.corners());
+        self.corners.extend_from_slice(corners);
+        self.mid_nodes.extend_from_slice(mid_nodes);
+        self.highest = self.highest.max(numbers[0]);
         if let Some(set) = set {
             self.element_sets.add(set, numbers[0]);
         }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::deck;
+use super::instance::{Instances, Scope};
 use crate::tagged::error::Fault;
 
 /// Members per labelled thing, on average over all sets, beyond which a file is refused: ranges and sets of sets could
@@ -12,7 +14,7 @@ const MOST_PER_LABEL: usize = 64;
 #[derive(Default)]
 pub(super) struct Sets {
     pub(super) list: Vec<Set>,
-    by_name: BTreeMap<String, usize>,
+    by_name: BTreeMap<(Scope, String), usize>,
 }
 
 /// A set as the file tells it.
@@ -22,8 +24,7 @@ pub(super) struct Set {
     pub(super) at: usize,
     /// Whether the program that wrote the file made it for itself.
     pub(super) internal: bool,
-    /// Whether it is one of the assembly, not of the part.
-    of_assembly: bool,
+    pub(super) scope: Scope,
     items: Vec<Item>,
 }
 
@@ -35,35 +36,44 @@ enum Item {
     },
     /// Another set, by its number.
     Set(usize),
+    /// The nodes of a set of elements.
+    NodesOf(usize),
 }
 
 impl Sets {
     /// Number of the set of that name, made where there is none.
-    ///
-    /// Sets of the part and of the assembly may have one name and differ; as groups they would be one.
-    pub(super) fn open(&mut self, name: &str, at: usize, internal: bool, of_assembly: bool) -> Result<usize, Fault> {
-        let next = self.list.len();
-        let number = *self.by_name.entry(name.to_uppercase()).or_insert(next);
-        let other = self.list.get(number).filter(|set| set.of_assembly != of_assembly);
-        // Sets that Abaqus makes for itself are numbered anew in the assembly; what has used those of the part has done so above.
-        let is_own = other.is_some_and(|other| internal && other.internal);
-        if number == next || is_own {
-            self.by_name.insert(name.to_uppercase(), next);
-            self.list.push(Set { name: name.to_owned(), at, internal, of_assembly, items: Vec::new() });
-            return Ok(next);
-        }
-        if other.is_some() {
-            let message = format!("set \"{name}\" of the assembly has the name of one of the part; rename one of them");
-            return Err(Fault::unsupported(at, message));
-        }
-        Ok(number)
+    pub(super) fn open(&mut self, name: &str, at: usize, internal: bool, scope: Scope) -> usize {
+        self.open_as(name.to_uppercase(), name, at, internal, scope)
     }
 
-    /// Number of the set of that name; a name may begin with that of its instance and a point.
-    pub(super) fn find(&self, name: &str) -> Option<usize> {
-        let name = name.to_uppercase();
-        let of_instance = || self.by_name.get(name.rsplit_once('.')?.1);
-        self.by_name.get(&name).or_else(of_instance).copied()
+    /// The same of a surface of nodes, which may have the name of a set.
+    pub(super) fn open_surface(&mut self, name: &str, at: usize, internal: bool, scope: Scope) -> usize {
+        self.open_as(format!("{}, SURFACE", name.to_uppercase()), name, at, internal, scope)
+    }
+
+    fn open_as(&mut self, key: String, name: &str, at: usize, internal: bool, scope: Scope) -> usize {
+        let next = self.list.len();
+        let number = *self.by_name.entry((scope, key)).or_insert(next);
+        if number == next {
+            self.list.push(Set { name: name.to_owned(), at, internal, scope, items: Vec::new() });
+        }
+        number
+    }
+
+    /// Number of the set of that name, which may begin with that of an instance and a point: one of the instance, or else of the assembly.
+    pub(super) fn find(&self, name: &str, scope: Scope, instances: &Instances) -> Option<usize> {
+        let known = |scope: Scope, name: &str| self.by_name.get(&(scope, name.to_uppercase())).copied();
+        let qualified = || {
+            let (instance, name) = name.split_once('.')?;
+            known(instances.find(deck::unquoted(instance)), deck::unquoted(name))
+        };
+        let alone = || (0..instances.list.len()).find_map(|instance| known(Some(instance), name));
+        known(scope, name).or_else(|| known(None, name)).or_else(qualified).or_else(alone)
+    }
+
+    /// Adds the nodes of a set of elements.
+    pub(super) fn add_nodes_of(&mut self, set: usize, elements: usize) {
+        self.list[set].items.push(Item::NodesOf(elements));
     }
 
     /// Adds one label.
@@ -77,12 +87,21 @@ impl Sets {
     }
 
     /// Adds what a field of a data line says: a label, or the name of a set above.
-    pub(super) fn add_field(&mut self, set: usize, at: usize, field: &str) -> Result<(), Fault> {
-        if let Some(label) = label(field) {
+    ///
+    /// - `scope`: instance whose labels and sets these are
+    pub(super) fn add_field(
+        &mut self,
+        set: usize,
+        at: usize,
+        field: &str,
+        scope: Scope,
+        instances: &Instances,
+    ) -> Result<(), Fault> {
+        if let Some(label) = instances.label(field, scope) {
             self.add(set, label);
             return Ok(());
         }
-        match self.find(super::deck::unquoted(field)) {
+        match self.find(deck::unquoted(field), scope, instances) {
             Some(other) if other != set => self.list[set].items.push(Item::Set(other)),
             _ => {
                 let expected = "a label, or the name of a set that is defined above";
@@ -110,7 +129,12 @@ impl Sets {
     /// Members of all sets as ascending indices of labelled things.
     ///
     /// - `labels`: label and index, ascending
-    pub(super) fn resolve(&self, labels: &[(u64, u32)]) -> Result<Vec<Vec<u32>>, Fault> {
+    /// - `nodes_of`: those of a set of elements
+    pub(super) fn resolve(
+        &self,
+        labels: &[(u64, u32)],
+        nodes_of: impl Fn(usize) -> Vec<u32>,
+    ) -> Result<Vec<Vec<u32>>, Fault> {
         let most = MOST_PER_LABEL.saturating_mul(labels.len());
         let mut looked_at = 0usize;
         let mut resolved: Vec<Vec<u32>> = Vec::with_capacity(self.list.len());
@@ -124,6 +148,11 @@ impl Sets {
                         looked_at += to.saturating_sub(from);
                         let hit = |(label, _): &&(u64, u32)| (label - first).is_multiple_of((*step).max(1));
                         members.extend(labels[from..to.max(from)].iter().filter(hit).map(|(_, index)| index));
+                    }
+                    Item::NodesOf(elements) => {
+                        let nodes = nodes_of(*elements);
+                        looked_at += nodes.len();
+                        members.extend(nodes);
                     }
                     Item::Set(other) if *other < number => {
                         looked_at += resolved[*other].len();
@@ -160,10 +189,4 @@ pub(super) fn unknown_labels(
     let more = unknown.count();
     let others = if more > 0 { format!(" and {more} more") } else { String::new() };
     Some(format!("{of} lists {what} {first}{others}, which the mesh does not have"))
-}
-
-/// A label: a whole number, which may follow the name of an instance and a point.
-pub(super) fn label(field: &str) -> Option<u64> {
-    let plain = field.rsplit_once('.').map_or(field, |(_, label)| label);
-    plain.parse().ok()
 }

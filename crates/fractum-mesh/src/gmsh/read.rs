@@ -56,7 +56,7 @@ fn read_format(cursor: &mut Cursor) -> Result<Format, Fault> {
         (at, line) = cursor.line().ok_or_else(missing)?;
     }
     if line != b"$MeshFormat" {
-        return Err(Fault { at, problem: Problem::NotGmsh { found: quote(line), hint: hint_for(line) } });
+        return Err(Fault { at, problem: Problem::NotGmsh { found: quote(line), hint: hint_for(cursor.bytes, line) } });
     }
     let mut record = cursor.record(What::one("the mesh format"))?;
     let at = record.at();
@@ -98,17 +98,24 @@ fn read_layout(cursor: &mut Cursor, version: Version, data_size: u64, at: usize)
     }
 }
 
-fn hint_for(line: &[u8]) -> &'static str {
-    if line == b"$NOD" {
+/// What a file of another program is, and how to convert it.
+fn hint_for(bytes: &[u8], line: &[u8]) -> &'static str {
+    let has_line =
+        |start: &[u8]| bytes.split(|&byte| byte == b'\n').any(|line| line.trim_ascii_start().starts_with(start));
+    let begins = |starts: &[&[u8]]| starts.iter().any(|start| line.starts_with(start));
+    if bytes.starts_with(crate::GIT_LFS) {
+        "; this is a pointer of Git LFS, which stands for the mesh; fetch the mesh itself with: git lfs pull"
+    } else if line == b"$NOD" {
         "; this is MSH version 1, convert with: gmsh in.msh -save -format msh41 -o out.msh"
     } else if line.starts_with(b"(") {
         "; this is an Ansys mesh, convert with: meshio convert --input-format ansys --output-format gmsh22 IN.msh OUT.msh, \
          or export an Abaqus .inp with its sets"
-    } else if [&b"solid"[..], b"# vtk", b"\x89HDF", b"-1", b"BEGIN BULK", b"CEND", b"SOL "]
-        .iter()
-        .any(|start| line.starts_with(start))
-    {
+    } else if begins(&[b"BEGIN BULK", b"CEND", b"SOL ", b"GRID"]) || has_line(b"GRID") {
+        "; this is a Nastran file, convert with: meshio convert --input-format nastran IN OUT.vtu (it needs the line BEGIN BULK)"
+    } else if begins(&[b"solid", b"\x89HDF", b"-1"]) {
         "; convert with: gmsh FILE -save -format msh41 -o out.msh"
+    } else if begins(&[b"# vtk", b"MeshVersionFormatted", b"NDIME", b"mesh3d", b"OFF", b"ply", b"* GRIDPOINTS"]) {
+        "; convert with: meshio convert IN OUT.vtu"
     } else {
         ""
     }

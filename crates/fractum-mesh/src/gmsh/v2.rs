@@ -194,7 +194,7 @@ fn positive(tag: i32, at: usize, noun: &str) -> Result<u64, Fault> {
 pub(super) fn element_type(code: i64, at: usize) -> Result<ElementType, Fault> {
     u64::try_from(code).ok().and_then(ElementType::from_code).ok_or_else(|| {
         let name = ElementType::name_of_unknown(code);
-        let expected = "points, lines, triangles, quadrilaterals or tetrahedra; mesh the part again with these";
+        let expected = "points, lines, triangles, quadrilaterals, tetrahedra, hexahedra, prisms or pyramids; mesh the part again with these";
         Fault::unexpected(at, name, expected)
     })
 }

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use super::element_type::Shape;
 use super::error::Fault;
-use super::raw::{Raw, Run};
+use super::raw::Raw;
+use super::split::split;
 use super::table::{Table, Tables};
 use super::tags::{NodeIndex, repeated_tag};
 use super::{groups, shape_check};
@@ -17,13 +18,12 @@ pub(crate) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
     }
     groups::limit_memberships(&raw, bytes)?;
     let mut notices = std::mem::take(&mut raw.notices);
-    refuse_unheld_shapes(&raw, bytes, &mut notices)?;
     let index = index_nodes(&raw, bytes)?;
+    let higher_order = split(&mut raw, &index, bytes, &mut notices)?;
     let mut tables = Tables {
         points: Table::collect(&raw, &index, Shape::Point, bytes)?,
         lines: Table::collect(&raw, &index, Shape::Line, bytes)?,
         triangles: Table::collect(&raw, &index, Shape::Triangle, bytes)?,
-        quads: Table::collect(&raw, &index, Shape::Quad, bytes)?,
         tetrahedra: Table::collect(&raw, &index, Shape::Tetrahedron, bytes)?,
     };
     let merged = tables.merge_duplicates(raw.nodes.len());
@@ -35,27 +35,24 @@ pub(crate) fn assemble(mut raw: Raw, bytes: &[u8]) -> Result<Mesh, Fault> {
     shape_check::check_tetrahedra(&raw, &mut tables.tetrahedra, bytes, &mut notices)?;
     shape_check::check_flat(&raw, &mut tables, bytes, &mut notices)?;
     shape_check::check_lines(&raw, &tables.lines, bytes)?;
-    note_mid_nodes(&raw, tables.kept(), &mut notices);
+    note_mid_nodes(&raw, tables.kept(), higher_order, &mut notices);
 
     let groups = groups::build(&raw, &tables, bytes, &mut notices)?;
-    let Tables { points, lines, triangles, quads, tetrahedra } = tables;
+    let Tables { points, lines, triangles, tetrahedra } = tables;
     let mut mesh = Mesh {
         nodes: raw.nodes,
         node_tags: raw.node_tags,
         point_tags: points.tags(&raw.element_tags),
         line_tags: lines.tags(&raw.element_tags),
         triangle_tags: triangles.tags(&raw.element_tags),
-        quad_tags: quads.tags(&raw.element_tags),
         tetrahedron_tags: tetrahedra.tags(&raw.element_tags),
         points: points.elements,
         lines: lines.elements,
         triangles: triangles.elements,
-        quads: quads.elements,
         tetrahedra: tetrahedra.elements,
         groups,
         notices,
-        whole: None,
-        cuts: Vec::new(),
+        ..Mesh::default()
     };
     drop_unused_nodes(&mut mesh);
     Ok(mesh)
@@ -66,14 +63,7 @@ const NO_ELEMENTS: &str = "at least one element; mesh the model before saving it
 
 /// The tag-to-index table of the nodes.
 fn index_nodes(raw: &Raw, bytes: &[u8]) -> Result<NodeIndex, Fault> {
-    if raw.nodes.len() >= u32::MAX as usize || raw.element_tags.len() >= u32::MAX as usize {
-        let message = format!(
-            "{} nodes and {} elements; fractum holds fewer than 4294967295 of each",
-            raw.nodes.len(),
-            raw.element_tags.len()
-        );
-        return Err(Fault::unsupported(bytes.len(), message));
-    }
+    raw.limit_counts(bytes)?;
     NodeIndex::new(&raw.node_tags).map_err(|second| {
         let block = raw.node_blocks.partition_point(|(first, _)| *first <= second) - 1;
         let (first, records) = raw.node_blocks[block];
@@ -82,46 +72,16 @@ fn index_nodes(raw: &Raw, bytes: &[u8]) -> Result<NodeIndex, Fault> {
     })
 }
 
-/// Hexahedra, prisms and pyramids are an error where they are meant to be computed with: in a physical group, or in a
-/// file without any. Elsewhere they are skipped.
-fn refuse_unheld_shapes(raw: &Raw, bytes: &[u8], notices: &mut Vec<String>) -> Result<(), Fault> {
-    let any_group = raw.runs.iter().any(|run| !raw.physical_tags(run).is_empty());
-    let mut skipped: BTreeMap<Shape, usize> = BTreeMap::new();
-    for run in raw.runs.iter().filter(|run| run.kind.shape.corners() == 0 && run.count > 0) {
-        if let Some(&tag) = raw.physical_tags(run).first() {
-            return Err(unheld(raw, run, &format!(" of group \"{}\"", groups::name_of(raw, 3, tag)), bytes));
-        }
-        if !any_group {
-            return Err(unheld(raw, run, "", bytes));
-        }
-        *skipped.entry(run.kind.shape).or_default() += run.count;
-    }
-    for (shape, count) in skipped {
-        notices.push(format!("{} in no physical group skipped", shape.counted(count)));
-    }
-    Ok(())
-}
-
-fn unheld(raw: &Raw, run: &Run, group: &str, bytes: &[u8]) -> Fault {
-    let message = format!(
-        "element {}{group} is a {}; fractum computes with tetrahedra: mesh that volume without Recombine and Layers, \
-         or leave it out of the physical groups",
-        raw.element_tags[run.first],
-        run.kind.shape.singular()
-    );
-    Fault::unsupported(run.records.locate(bytes, 0), message)
-}
-
 fn refuse_repeated_tags(raw: &Raw, kept: [&[u32]; 5], bytes: &[u8]) -> Result<(), Fault> {
     let Some(second) = repeated_tag(&raw.element_tags, kept) else { return Ok(()) };
     let run = &raw.runs[raw.runs.partition_point(|run| run.first <= second) - 1];
     let message =
         format!("element tag {} occurs twice with different nodes; expected each once", raw.element_tags[second]);
-    Err(Fault::inconsistent(run.records.locate(bytes, second - run.first), message))
+    Err(Fault::inconsistent(run.locate(bytes, second - run.first), message))
 }
 
-fn note_mid_nodes(raw: &Raw, kept: [&[u32]; 5], notices: &mut Vec<String>) {
-    let mut counts: BTreeMap<Shape, usize> = BTreeMap::new();
+/// - `counts`: elements of higher order that were split
+fn note_mid_nodes(raw: &Raw, kept: [&[u32]; 5], mut counts: BTreeMap<Shape, usize>, notices: &mut Vec<String>) {
     for run in raw.runs.iter().filter(|run| run.kind.has_mid_nodes()) {
         let below = |end: usize| kept[run.kind.shape as usize].partition_point(|&index| (index as usize) < end);
         *counts.entry(run.kind.shape).or_default() += below(run.first + run.count) - below(run.first);
@@ -141,7 +101,6 @@ fn drop_unused_nodes(mesh: &mut Mesh) {
     mark(mesh.points.as_flattened());
     mark(mesh.lines.as_flattened());
     mark(mesh.triangles.as_flattened());
-    mark(mesh.quads.as_flattened());
     mark(mesh.tetrahedra.as_flattened());
     let unused = used.iter().filter(|&&used| !used).count();
     if unused == 0 {
@@ -162,6 +121,5 @@ fn drop_unused_nodes(mesh: &mut Mesh) {
     renumber(mesh.points.as_flattened_mut());
     renumber(mesh.lines.as_flattened_mut());
     renumber(mesh.triangles.as_flattened_mut());
-    renumber(mesh.quads.as_flattened_mut());
     renumber(mesh.tetrahedra.as_flattened_mut());
 }

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::element_type::ElementType;
+use super::element_type::{ElementType, Shape};
 use super::error::Fault;
 use super::raw::{Membership, PhysicalName, Raw, Records};
 use crate::mesh::list;
@@ -19,6 +19,9 @@ pub(crate) struct Builder {
     /// Dimensions in which a group has elements.
     dimensions: BTreeSet<(u8, i32)>,
     highest_tag: u64,
+    /// Nodes between the corners of elements, ascending, and how many points on them were left out.
+    mid_nodes: Vec<u64>,
+    points_left_out: usize,
 }
 
 impl Builder {
@@ -44,8 +47,21 @@ impl Builder {
         Membership::Entity(*self.entities.entry((dimension, groups)).or_insert(next))
     }
 
+    /// Leaves out the points on mid nodes, which no element keeps, from now on.
+    pub(crate) fn leave_out(&mut self, mut mid_nodes: Vec<u64>) {
+        let mut corners = if mid_nodes.is_empty() { Vec::new() } else { self.raw.corners.clone() };
+        corners.sort_unstable();
+        mid_nodes.retain(|node| corners.binary_search(node).is_err());
+        mid_nodes.sort_unstable();
+        self.mid_nodes = mid_nodes;
+    }
+
     /// Adds an element of these groups.
     pub(crate) fn push(&mut self, kind: ElementType, groups: Vec<i32>, at: usize, tag: u64, corners: &[u64]) {
+        if kind.shape == Shape::Point && self.mid_nodes.binary_search(&corners[0]).is_ok() {
+            self.points_left_out += 1;
+            return;
+        }
         let membership = self.membership(kind.shape.dimension(), groups);
         self.raw.push_run(kind, membership, 1, Records { at, stride: 0 });
         self.raw.element_tags.push(tag);
@@ -62,6 +78,10 @@ impl Builder {
     pub(crate) fn finish(mut self, bytes: &[u8]) -> Result<Raw, Fault> {
         if self.highest_tag == u64::MAX {
             return Err(Fault::unsupported(bytes.len(), format!("element label {} is too large", u64::MAX)));
+        }
+        if self.points_left_out > 0 {
+            let notice = format!("{} mid node(s) left out of sets of nodes", self.points_left_out);
+            self.raw.notices.push(notice);
         }
         let name = |&(dimension, tag): &(u8, i32)| {
             let (name, at) = &self.groups[tag as usize - 1];

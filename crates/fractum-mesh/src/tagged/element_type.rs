@@ -29,14 +29,32 @@ impl Shape {
         }
     }
 
-    /// Corner nodes kept by the reader; none for the shapes that fractum does not hold.
+    /// Corner nodes, which are all that the reader keeps.
     pub(crate) fn corners(self) -> usize {
         match self {
             Shape::Point => 1,
             Shape::Line => 2,
             Shape::Triangle => 3,
             Shape::Quad | Shape::Tetrahedron => 4,
-            Shape::Hexahedron | Shape::Prism | Shape::Pyramid => 0,
+            Shape::Pyramid => 5,
+            Shape::Prism => 6,
+            Shape::Hexahedron => 8,
+        }
+    }
+
+    /// Corners of each facet of a solid, or of each side of a flat element, in the order of Abaqus. Facets turn as seen
+    /// from within.
+    pub(crate) fn faces(self) -> &'static [&'static [usize]] {
+        match self {
+            Shape::Point | Shape::Line => &[],
+            Shape::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
+            Shape::Quad => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+            Shape::Tetrahedron => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],
+            Shape::Pyramid => &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]],
+            Shape::Prism => &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]],
+            Shape::Hexahedron => {
+                &[&[0, 1, 2, 3], &[4, 7, 6, 5], &[0, 4, 5, 1], &[1, 5, 6, 2], &[2, 6, 7, 3], &[3, 7, 4, 0]]
+            }
         }
     }
 
@@ -122,7 +140,7 @@ impl ElementType {
 
     /// Whether the element has nodes besides its corners.
     pub(crate) fn has_mid_nodes(self) -> bool {
-        self.nodes > self.shape.corners() && self.shape.corners() > 0
+        self.nodes > self.shape.corners()
     }
 
     /// What to say about a number that [`ElementType::from_code`] does not know.
@@ -141,6 +159,21 @@ impl ElementType {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_edge_of_a_solid_is_passed_once_each_way() {
+        for shape in [Shape::Tetrahedron, Shape::Pyramid, Shape::Prism, Shape::Hexahedron] {
+            let around = |face: &&'static [usize]| (0..face.len()).map(|i| [face[i], face[(i + 1) % face.len()]]);
+            let mut edges: Vec<[usize; 2]> = shape.faces().iter().flat_map(around).collect::<Vec<_>>();
+            edges.sort_unstable();
+            let mut back: Vec<[usize; 2]> = edges.iter().map(|&[a, b]| [b, a]).collect();
+            back.sort_unstable();
+            assert_eq!(edges, back, "{shape:?}");
+            edges.dedup();
+            // Euler: corners - edges + faces = 2, and each edge is there twice.
+            assert_eq!(shape.corners() + shape.faces().len(), 2 + edges.len() / 2, "{shape:?}");
+        }
+    }
 
     #[test]
     fn node_counts_are_those_of_complete_and_serendipity_orders() {

@@ -12,10 +12,12 @@ pub struct MeshError {
 }
 
 /// A place in a mesh file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// Line of an ASCII file, from 1.
     Line(usize),
+    /// Line of a further file that the file names.
+    LineOf(String, usize),
     /// Offset in a binary file, from 0.
     Byte(usize),
 }
@@ -24,6 +26,7 @@ impl fmt::Display for Place {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Place::Line(line) => write!(out, "line {line}"),
+            Place::LineOf(file, line) => write!(out, "line {line} of {file}"),
             Place::Byte(byte) => write!(out, "byte {byte}"),
         }
     }

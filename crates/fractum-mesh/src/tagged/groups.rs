@@ -29,16 +29,10 @@ pub(super) fn limit_memberships(raw: &Raw, bytes: &[u8]) -> Result<(), Fault> {
                  element on average",
                 raw.element_tags[run.first]
             );
-            return Err(Fault::unsupported(run.records.locate(bytes, 0), message));
+            return Err(Fault::unsupported(run.locate(bytes, 0), message));
         }
     }
     Ok(())
-}
-
-/// The name of a physical group, given or made up.
-pub(super) fn name_of(raw: &Raw, dimension: u8, tag: i32) -> String {
-    let named = raw.names.iter().find(|name| (name.dimension, name.tag) == (dimension, tag));
-    named.map_or_else(|| made_up_name(tag), |name| name.name.clone())
 }
 
 fn made_up_name(tag: i32) -> String {
@@ -50,7 +44,7 @@ pub(super) fn build(raw: &Raw, tables: &Tables, bytes: &[u8], notices: &mut Vec<
     let mut groups = named_groups(&raw.names)?;
     let mut nameless: Vec<String> = Vec::new();
     let mut positions = [0usize; 5];
-    for run in raw.runs.iter().filter(|run| run.kind.shape.corners() > 0) {
+    for run in &raw.runs {
         let shape = run.kind.shape;
         let from = positions[shape as usize];
         let range = from..from + run.count;
@@ -58,7 +52,7 @@ pub(super) fn build(raw: &Raw, tables: &Tables, bytes: &[u8], notices: &mut Vec<
         for &tag in raw.physical_tags(run) {
             let dimension = shape.dimension();
             if groups.len() == MOST_GROUPS && !groups.contains_key(&(dimension, tag)) {
-                return Err(too_many_groups(run.records.locate(bytes, 0)));
+                return Err(too_many_groups(run.locate(bytes, 0)));
             }
             let group = groups.entry((dimension, tag)).or_insert_with(|| {
                 let name = made_up_name(tag);
@@ -69,15 +63,14 @@ pub(super) fn build(raw: &Raw, tables: &Tables, bytes: &[u8], notices: &mut Vec<
                 Shape::Point => tables.points.push_members(range.clone(), &mut group.points),
                 Shape::Line => tables.lines.push_members(range.clone(), &mut group.lines),
                 Shape::Triangle => tables.triangles.push_members(range.clone(), &mut group.triangles),
-                Shape::Quad => tables.quads.push_members(range.clone(), &mut group.quads),
                 _ => tables.tetrahedra.push_members(range.clone(), &mut group.tetrahedra),
             }
         }
     }
     let mut groups: Vec<Group> = groups.into_values().collect();
     for group in &mut groups {
-        let Group { points, lines, triangles, quads, tetrahedra, .. } = group;
-        for members in [points, lines, triangles, quads, tetrahedra] {
+        let Group { points, lines, triangles, tetrahedra, .. } = group;
+        for members in [points, lines, triangles, tetrahedra] {
             members.sort_unstable();
             members.dedup();
         }

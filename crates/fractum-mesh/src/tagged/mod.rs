@@ -10,6 +10,7 @@ pub(crate) mod error;
 mod groups;
 pub(crate) mod raw;
 mod shape_check;
+mod split;
 mod table;
 mod tags;
 

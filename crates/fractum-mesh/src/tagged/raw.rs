@@ -4,6 +4,7 @@ use fractum_math::Vec3;
 
 use super::cursor::Cursor;
 use super::element_type::ElementType;
+use super::error::Fault;
 
 /// A mesh as the file tells it: tags instead of indices, nothing cross-checked, and where each record lies.
 #[derive(Default)]
@@ -16,7 +17,7 @@ pub(crate) struct Raw {
     /// First node and records of each block of nodes.
     pub(crate) node_blocks: Vec<(usize, Records)>,
     pub(crate) element_tags: Vec<u64>,
-    /// Node tags of the corners, element after element; nothing for shapes that are not held.
+    /// Node tags of the corners, element after element.
     pub(crate) corners: Vec<u64>,
     pub(crate) runs: Vec<Run>,
     pub(crate) notices: Vec<String>,
@@ -40,6 +41,8 @@ pub(crate) struct Run {
     /// Index of its first corner in [`Raw::corners`].
     pub(crate) first_corner: usize,
     pub(crate) records: Records,
+    /// For each element the record that it is a piece of; none where each has its own.
+    pub(crate) pieces: Option<Vec<u32>>,
 }
 
 /// How a run tells its physical groups.
@@ -73,7 +76,24 @@ impl Records {
     }
 }
 
+impl Run {
+    /// Offset of the record of an element, counted from the first of the run.
+    pub(crate) fn locate(&self, bytes: &[u8], element: usize) -> usize {
+        self.records.locate(bytes, self.pieces.as_ref().map_or(element, |pieces| pieces[element] as usize))
+    }
+}
+
 impl Raw {
+    /// Refuses more nodes or elements than indices can tell apart.
+    pub(crate) fn limit_counts(&self, bytes: &[u8]) -> Result<(), Fault> {
+        let (nodes, elements) = (self.nodes.len(), self.element_tags.len());
+        if nodes >= u32::MAX as usize || elements >= u32::MAX as usize {
+            let message = format!("{nodes} nodes and {elements} elements; fractum holds fewer than 4294967295 of each");
+            return Err(Fault::unsupported(bytes.len(), message));
+        }
+        Ok(())
+    }
+
     /// Physical tags of a run, without sign.
     pub(crate) fn physical_tags<'a>(&'a self, run: &'a Run) -> &'a [i32] {
         match &run.membership {
@@ -103,6 +123,6 @@ impl Raw {
     /// Starts a run whose elements are about to be appended.
     pub(crate) fn push_run(&mut self, kind: ElementType, membership: Membership, count: usize, records: Records) {
         let (first, first_corner) = (self.element_tags.len(), self.corners.len());
-        self.runs.push(Run { kind, membership, count, first, first_corner, records });
+        self.runs.push(Run { kind, membership, count, first, first_corner, records, pieces: None });
     }
 }

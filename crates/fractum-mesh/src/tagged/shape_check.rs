@@ -22,7 +22,7 @@ pub(super) fn check_tetrahedra(
         let nodes = table.elements[element];
         let corners = nodes.map(|node| raw.nodes[node as usize]);
         let volume = signed_volume(corners);
-        if !is_above(6.0 * volume.abs(), cube_of_longest_edge(&corners)) {
+        if !has_volume(volume, &corners) {
             return Err(degenerate(raw, table, element, format!("has no volume ({volume:e})"), bytes));
         }
         if volume < 0.0 {
@@ -37,11 +37,10 @@ pub(super) fn check_tetrahedra(
     Ok(())
 }
 
-/// Refuses triangles and quadrilaterals without area; in a plane mesh, where they are the bodies, turns those seen
-/// from below.
+/// Refuses triangles without area; in a plane mesh, where they are the bodies, turns those seen from below.
 pub(super) fn check_flat(raw: &Raw, tables: &mut Tables, bytes: &[u8], notices: &mut Vec<String>) -> Result<(), Fault> {
-    let Tables { triangles, quads, tetrahedra, .. } = tables;
-    let plane = tetrahedra.elements.is_empty() && is_plane(raw, triangles, quads);
+    let Tables { triangles, tetrahedra, .. } = tables;
+    let plane = tetrahedra.elements.is_empty() && is_plane(raw, triangles);
     let mut flipped = 0;
     for element in 0..triangles.elements.len() {
         let [a, b, c] = triangles.elements[element];
@@ -52,18 +51,6 @@ pub(super) fn check_flat(raw: &Raw, tables: &mut Tables, bytes: &[u8], notices: 
         }
         if plane && area.z < 0.0 {
             triangles.elements[element] = [a, c, b];
-            flipped += 1;
-        }
-    }
-    for element in 0..quads.elements.len() {
-        let [a, b, c, d] = quads.elements[element];
-        let corners = [a, b, c, d].map(|node| raw.nodes[node as usize]);
-        let area = 0.5 * (corners[2] - corners[0]).cross(&(corners[3] - corners[1]));
-        if !is_above(area.norm(), longest_edge_squared(&corners)) {
-            return Err(degenerate(raw, quads, element, format!("has no area ({:e})", area.norm()), bytes));
-        }
-        if plane && area.z < 0.0 {
-            quads.elements[element] = [a, d, c, b];
             flipped += 1;
         }
     }
@@ -84,9 +71,9 @@ pub(super) fn check_lines(raw: &Raw, table: &Table<2>, bytes: &[u8]) -> Result<(
     Ok(())
 }
 
-/// Whether all triangles and quadrilaterals lie in one plane z = constant.
-fn is_plane(raw: &Raw, triangles: &Table<3>, quads: &Table<4>) -> bool {
-    let mut nodes = triangles.elements.as_flattened().iter().chain(quads.elements.as_flattened());
+/// Whether all triangles lie in one plane z = constant.
+fn is_plane(raw: &Raw, triangles: &Table<3>) -> bool {
+    let mut nodes = triangles.elements.as_flattened().iter();
     let Some(&first) = nodes.next() else { return false };
     let first = raw.nodes[first as usize];
     let (mut low, mut high) = (first, first);
@@ -96,6 +83,11 @@ fn is_plane(raw: &Raw, triangles: &Table<3>, quads: &Table<4>) -> bool {
     }
     let extent = high - low;
     extent.z <= 1e-9 * extent.x.max(extent.y)
+}
+
+/// Whether a tetrahedron is more than a rounding error thick.
+pub(super) fn has_volume(volume: f64, corners: &[Vec3; 4]) -> bool {
+    is_above(6.0 * volume.abs(), cube_of_longest_edge(corners))
 }
 
 /// False also where the numbers overflow.

@@ -20,7 +20,6 @@ pub(super) struct Tables {
     pub(super) points: Table<1>,
     pub(super) lines: Table<2>,
     pub(super) triangles: Table<3>,
-    pub(super) quads: Table<4>,
     pub(super) tetrahedra: Table<4>,
 }
 
@@ -30,14 +29,13 @@ impl Tables {
         self.points.merge_duplicates(node_count)
             + self.lines.merge_duplicates(node_count)
             + self.triangles.merge_duplicates(node_count)
-            + self.quads.merge_duplicates(node_count)
             + self.tetrahedra.merge_duplicates(node_count)
     }
 
     /// [`Table::kept`] of each shape, in the order of [`Shape`].
     pub(super) fn kept(&self) -> [&[u32]; 5] {
-        let Tables { points, lines, triangles, quads, tetrahedra } = self;
-        [&points.kept, &lines.kept, &triangles.kept, &quads.kept, &tetrahedra.kept]
+        let Tables { points, lines, triangles, tetrahedra } = self;
+        [&points.kept, &lines.kept, &triangles.kept, &[], &tetrahedra.kept]
     }
 }
 
@@ -144,7 +142,7 @@ impl<const N: usize> Table<N> {
     pub(super) fn locate(&self, raw: &Raw, element: usize, bytes: &[u8]) -> (u64, usize) {
         let index = self.kept[element] as usize;
         let run = &raw.runs[raw.runs.partition_point(|run| run.first <= index) - 1];
-        (raw.element_tags[index], run.records.locate(bytes, index - run.first))
+        (raw.element_tags[index], run.locate(bytes, index - run.first))
     }
 }
 
@@ -153,12 +151,20 @@ fn sorted<const N: usize>(mut nodes: [u32; N]) -> [u32; N] {
     nodes
 }
 
-fn missing_node(raw: &Raw, index: &NodeIndex, run: &Run, element: usize, tags: &[u64], bytes: &[u8]) -> Fault {
+/// An element that names a node that is not there.
+pub(super) fn missing_node(
+    raw: &Raw,
+    index: &NodeIndex,
+    run: &Run,
+    element: usize,
+    tags: &[u64],
+    bytes: &[u8],
+) -> Fault {
     let missing = tags.iter().find(|&&tag| index.find(tag).is_none()).expect("one tag is not a node");
     let message = format!(
         "element {} ({}) names node {missing}, which $Nodes does not list",
         raw.element_tags[run.first + element],
         run.kind.shape.singular()
     );
-    Fault::inconsistent(run.records.locate(bytes, element), message)
+    Fault::inconsistent(run.locate(bytes, element), message)
 }

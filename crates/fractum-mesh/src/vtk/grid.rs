@@ -11,7 +11,16 @@ use crate::tagged::error::Fault;
 use crate::tagged::raw::{Raw, Records};
 
 /// Arrays that other programs number the parts of a mesh with; 0 and less is no part.
-const PARTS: [&str; 3] = ["gmsh:physical", "medit:ref", "CellEntityIds"];
+const PARTS: [&str; 8] = [
+    "gmsh:physical",
+    "medit:ref",
+    "nastran:ref",
+    "netgen:index",
+    "tetgen:ref",
+    "ugrid:ref",
+    "su2:tag",
+    "CellEntityIds",
+];
 
 /// Flags by which VTK hides points and cells, or says that another piece has them too.
 const GHOSTS: &str = "vtkGhostType";
@@ -129,14 +138,14 @@ fn add_cells(builder: &mut Builder, document: &Document, groups: &[Members]) -> 
     let codes = document.wholes(types, document.cells)?;
     let total = usize::try_from(ends.last().copied().unwrap_or(0)).unwrap_or(usize::MAX);
     let nodes = document.wholes(connectivity, total)?;
-    let mut begin = 0;
+    let (mut begin, mut mid_nodes) = (0, Vec::new());
     for (cell, (&end, &code)) in ends.iter().zip(&codes).enumerate() {
         let disorder = || Fault::inconsistent(ends_array.at, format!("offset {end} of cell {cell} is out of order"));
         let end = usize::try_from(end).map_err(|_| disorder())?;
         let own = nodes.get(begin..end).ok_or_else(disorder)?;
         begin = end;
         let shape = shape_of(code).ok_or_else(|| unheld(code, cell, types.at))?;
-        if own.len() < shape.corners().max(1) {
+        if own.len() < shape.corners() {
             let message = format!("cell {cell}, a {}, has {} nodes", shape.singular(), own.len());
             return Err(Fault::inconsistent(ends_array.at, message));
         }
@@ -144,12 +153,22 @@ fn add_cells(builder: &mut Builder, document: &Document, groups: &[Members]) -> 
             let message = format!("cell {cell} names point {node} of {}, which are counted from 0", document.points);
             return Err(Fault::inconsistent(connectivity.at, message));
         }
-        let corners: Vec<u64> = own[..shape.corners()].iter().map(|&node| node as u64 + 1).collect();
+        let mut nodes: Vec<u64> = own.iter().map(|&node| node as u64 + 1).collect();
+        let corners = &mut nodes[..shape.corners()];
+        if matches!(code, PIXEL | VOXEL) {
+            // The corners go along the axes instead of around.
+            corners.chunks_exact_mut(4).for_each(|face| face.swap(2, 3));
+        }
         let kind = ElementType { shape, nodes: own.len() };
-        builder.push(kind, groups_of(groups, cell), types.at, cell as u64 + 1, &corners);
+        builder.push(kind, groups_of(groups, cell), types.at, cell as u64 + 1, corners);
+        mid_nodes.extend_from_slice(&nodes[shape.corners()..]);
     }
+    builder.leave_out(mid_nodes);
     Ok(())
 }
+
+const PIXEL: i64 = 8;
+const VOXEL: i64 = 11;
 
 /// The shape of a cell type of VTK (`vtkCellType.h`) whose corners come first.
 fn shape_of(code: i64) -> Option<Shape> {
@@ -157,9 +176,9 @@ fn shape_of(code: i64) -> Option<Shape> {
         1 => Shape::Point,
         3 | 21 | 35 | 68 => Shape::Line,
         5 | 22 | 34 | 69 => Shape::Triangle,
-        9 | 23 | 28 | 30 | 70 => Shape::Quad,
+        PIXEL | 9 | 23 | 28 | 30 | 70 => Shape::Quad,
         10 | 24 | 71 => Shape::Tetrahedron,
-        11 | 12 | 25 | 29 | 33 | 72 => Shape::Hexahedron,
+        VOXEL | 12 | 25 | 29 | 33 | 72 => Shape::Hexahedron,
         13 | 26 | 31 | 32 | 73 => Shape::Prism,
         14 | 27 | 37 | 74 => Shape::Pyramid,
         _ => return None,
@@ -168,7 +187,7 @@ fn shape_of(code: i64) -> Option<Shape> {
 
 fn unheld(code: i64, cell: usize, at: usize) -> Fault {
     let message = format!(
-        "cell {cell} has type {code} of VTK; expected points, lines, triangles, quadrilaterals and tetrahedra: in ParaView apply \
+        "cell {cell} has type {code} of VTK; expected points, lines, triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids: in ParaView apply \
          Tetrahedralize and save the data as .vtu"
     );
     Fault::unsupported(at, message)

@@ -16,7 +16,7 @@ use crate::tagged::error::{Fault, MeshError, Problem};
 ///
 /// An array of whole numbers that are all 0 or 1 is a group of what has 1: of elements on cells, of points on points. Ours
 /// have the dimension behind the name, as in `left (2d)`; the group is called `left`. In files without these, cell
-/// arrays `gmsh:physical`, `medit:ref` or `CellEntityIds` make groups `physical-1` and so on. Cells of higher order are
+/// arrays that number parts, such as `gmsh:physical`, `medit:ref`, `nastran:ref` or `CellEntityIds`, make groups `physical-1` and so on. Cells of higher order are
 /// read with their corners only. Nodes and elements are numbered from 1 in the order of the file.
 /// [`Mesh::notices`] tells what was done.
 ///

@@ -4,10 +4,10 @@ use std::fs;
 use std::path::Path;
 
 use clap::ValueEnum;
-use fractum::Failure;
+use fractum::{Failure, gather_mesh};
 use fractum_case::model::part_files;
 use fractum_case::refuse_endless;
-use fractum_mesh::{Mesh, MshFormat, joined, read_mesh, write_msh};
+use fractum_mesh::{Mesh, MshFormat, joined, write_msh};
 
 use super::mesh_vtu;
 
@@ -40,7 +40,10 @@ pub(super) fn write(
     let ending = output.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
     match (ending.as_str(), to) {
         ("msh", to) => {
-            let mesh = mesh()?;
+            let mut mesh = mesh()?;
+            if matches!(to, Some(Target::Msh22 | Target::Msh22Binary)) && mesh.highest_tag() > i32::MAX as u64 {
+                mesh.number();
+            }
             let format = to.unwrap_or(Target::Msh41Binary).into();
             Ok(fractum_output::atomic::write_with(output, |out| write_msh(&mesh, format, out))?)
         }
@@ -65,5 +68,6 @@ pub(super) fn read_one(file: &Path) -> Result<Mesh, Failure> {
     refuse_endless(file).map_err(|error| Failure::input(format!("{} {error}", file.display())))?;
     let bytes =
         fs::read(file).map_err(|error| Failure::input(format!("{}: cannot read the mesh: {error}", file.display())))?;
-    read_mesh(&bytes).map_err(|error| Failure::input(format!("{}: {error}", file.display())))
+    let mesh = gather_mesh(file, bytes).and_then(|gathered| gathered.read());
+    mesh.map_err(|error| Failure::input(format!("{}: {error}", file.display())))
 }

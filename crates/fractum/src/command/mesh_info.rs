@@ -6,8 +6,9 @@ use std::path::Path;
 
 use fractum_case::{Case, printable};
 use fractum_fem::EXCESS_OF_PEAK;
-use fractum_mesh::quality::{self, Lengths, Summary};
-use fractum_mesh::{Group, Mesh, topology};
+use fractum_mesh::bodies::{SolidElements, bodies};
+use fractum_mesh::quality::{Lengths, Summary};
+use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, quantity, significant};
 use serde_json::{Value, json};
 
@@ -54,17 +55,23 @@ struct Solids {
 }
 
 impl Solids {
-    fn of(mesh: &Mesh) -> Option<Self> {
-        if mesh.tetrahedra.is_empty() {
-            let edges = topology::edges_of_triangles(&mesh.triangles).nodes;
-            let lengths = quality::lengths(&mesh.nodes, &edges)?;
-            let summary = quality::summarize_triangles(&mesh.nodes, &mesh.triangles)?;
-            return Some(Solids { what: "triangles", lengths, summary });
-        }
-        let edges = topology::edges_of_tetrahedra(&mesh.tetrahedra).nodes;
-        let lengths = quality::lengths(&mesh.nodes, &edges)?;
-        let summary = quality::summarize_tetrahedra(&mesh.nodes, &mesh.tetrahedra)?;
-        Some(Solids { what: "tetrahedra", lengths, summary })
+    fn of(elements: &SolidElements, mesh: &Mesh) -> Option<Self> {
+        let (lengths, summary) = elements.quality(&mesh.nodes)?;
+        Some(Solids { what: elements.what(), lengths, summary })
+    }
+
+    /// As JSON values of edges and quality.
+    fn json(&self, unit: f64) -> [Value; 2] {
+        let Solids { lengths, summary, .. } = self;
+        let [shortest, mean, longest] = [lengths.shortest, lengths.mean, lengths.longest].map(|length| unit * length);
+        let quality = json!({
+            "mean_radius_ratio": summary.mean_radius_ratio,
+            "worst_radius_ratio": summary.worst_radius_ratio.value,
+            "smallest_angle": summary.smallest_angle.value,
+            "largest_angle": summary.largest_angle.value,
+            "shortest_altitude": unit * summary.shortest_altitude.value,
+        });
+        [json!({ "shortest": shortest, "mean": mean, "longest": longest }), quality]
     }
 }
 
@@ -94,17 +101,14 @@ pub(super) fn json(file: &Path, mesh: &Mesh, demand: Option<&Demand>) -> Value {
         "notices": mesh.notices,
         "hints": fractum_mesh::hints(mesh),
     });
-    if let Some(Solids { lengths, summary, .. }) = Solids::of(mesh) {
-        let [shortest, mean, longest] = [lengths.shortest, lengths.mean, lengths.longest].map(|length| unit * length);
-        value["edges"] = json!({ "shortest": shortest, "mean": mean, "longest": longest });
-        value["quality"] = json!({
-            "mean_radius_ratio": summary.mean_radius_ratio,
-            "worst_radius_ratio": summary.worst_radius_ratio.value,
-            "smallest_angle": summary.smallest_angle.value,
-            "largest_angle": summary.largest_angle.value,
-            "shortest_altitude": unit * summary.shortest_altitude.value,
-        });
+    if let Some(solids) = Solids::of(&SolidElements::of_mesh(mesh), mesh) {
+        [value["edges"], value["quality"]] = solids.json(unit);
     }
+    let body = |(group, elements): &(&Group, SolidElements)| {
+        let [edges, quality] = Solids::of(elements, mesh)?.json(unit);
+        Some(json!({ "name": group.name, "elements": elements.count(), "edges": edges, "quality": quality }))
+    };
+    value["bodies"] = bodies(mesh).iter().filter_map(body).collect();
     if let Some(demand) = demand {
         let zone = |zone: &Zone| (zone.material.clone(), json!(zone.length));
         value["process_zones"] = Value::Object(demand.zones.iter().map(zone).collect());
@@ -130,8 +134,13 @@ pub(super) fn text(file: &Path, mesh: &Mesh, demand: Option<&Demand>) -> String 
         let elements = count(group.element_count());
         let _ = write!(text, "\n  group \"{name}\" (dimension {dimension}, tag {tag}): {elements} elements");
     }
-    if let Some(solids) = Solids::of(mesh) {
+    let all = SolidElements::of_mesh(mesh);
+    if let Some(solids) = Solids::of(&all, mesh) {
         text += &quality_lines(&solids, &length);
+        for (group, elements) in bodies(mesh).iter().filter(|(_, elements)| elements.count() < all.count()) {
+            let own = Solids::of(elements, mesh).map_or_else(String::new, |own| body_line(&group.name, &own, &length));
+            text += &own;
+        }
         demand.iter().for_each(|demand| text += &zone_lines(&solids, demand));
     }
     for notice in &mesh.notices {
@@ -157,6 +166,20 @@ fn quality_lines(solids: &Solids, length: &dyn Fn(f64) -> String) -> String {
         significant(summary.worst_radius_ratio.value, 2),
         degrees(summary.smallest_angle.value),
         degrees(summary.largest_angle.value),
+        length(summary.shortest_altitude.value),
+    )
+}
+
+/// What a body has for itself.
+fn body_line(name: &str, Solids { what, lengths, summary }: &Solids, length: &dyn Fn(f64) -> String) -> String {
+    format!(
+        "\n  group \"{}\": edges of {what} {} to {}, mean {}; radius ratio {} on average, {} at worst; shortest altitude {}",
+        printable(name),
+        length(lengths.shortest),
+        length(lengths.longest),
+        length(lengths.mean),
+        significant(summary.mean_radius_ratio, 2),
+        significant(summary.worst_radius_ratio.value, 2),
         length(summary.shortest_altitude.value),
     )
 }

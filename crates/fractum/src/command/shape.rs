@@ -9,12 +9,13 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fractum::Failure;
 use fractum_case::{Choice, Dimension, parse_quantity, refuse_endless};
-use fractum_mesh::read_mesh;
 use fractum_output::log::Progress;
 use fractum_pack::{
     ClosedSurface, Domain, PackError, PackProgress, PackSize, PackSpec, Packing, pack_and_tell, pack_certified,
     read_stl,
 };
+
+use super::mesh_file;
 
 /// The shape to fill and the particles to fill it with.
 #[derive(Args, Clone)]
@@ -137,7 +138,7 @@ impl ShapeArguments {
 /// The closed surface of a group.
 fn group_surface(file: &Path, group: Option<&str>) -> Result<ClosedSurface, Failure> {
     let wrong = |what: String| Failure::input(format!("{}: {what}", file.display()));
-    let mesh = read_mesh(&read(file)?).map_err(|error| wrong(error.to_string()))?;
+    let mesh = mesh_file::read_one(file)?;
     if let Some(name) = group.filter(|name| mesh.group(name).is_empty()) {
         return Err(wrong(format!("no group \"{name}\"; groups here: {}", mesh.group_names().join(", "))));
     }

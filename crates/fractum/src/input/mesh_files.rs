@@ -1,7 +1,7 @@
 //! The mesh of a case from its files: whole, or in parts that several processes read side by side.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use fractum_case::build::{
@@ -10,7 +10,7 @@ use fractum_case::build::{
 use fractum_case::model::{MeshSource, SolidGroup, WHOLE_MESH};
 use fractum_case::{Case, Diagnostic, Diagnostics, Place, Spanned, refuse_endless};
 use fractum_math::Vec3;
-use fractum_mesh::{JoinError, Joint, Mesh, WholeMesh, halved, joined, joined_bodies, scrambled};
+use fractum_mesh::{Gathered, JoinError, Joint, Mesh, MeshError, WholeMesh, halved, joined, joined_bodies, scrambled};
 use fractum_output::memory;
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
@@ -118,7 +118,8 @@ impl MeshFiles {
 /// [`Failure::Input`] for a file that cannot be read.
 pub(crate) fn mesh_hash(case: &Case) -> Result<u128, Failure> {
     let Some(source) = &case.mesh else { return Ok(0) };
-    let hashes = source.files().into_iter().map(|file| Ok(xxh3_128(&bytes_of(source, &file)?)));
+    let hash_of = |file: PathBuf| Ok(xxh3_128(gathered(source, &file)?.bytes()));
+    let hashes = source.files().into_iter().map(hash_of);
     Ok(hash(&hashes.collect::<Result<Vec<_>, Failure>>()?))
 }
 
@@ -237,8 +238,8 @@ fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(
     // The file and the mesh that is read from it, which is about as large.
     let length = fs::metadata(file).map_or(0, |known| known.len());
     memory::require(2 * length * processes.here as u64, format!("reading {}", file.display()))?;
-    let bytes = bytes_of(source, file)?;
-    let cut = fractum_mesh::partitions(&bytes);
+    let gathered = gathered(source, file)?;
+    let cut = fractum_mesh::partitions(gathered.bytes());
     if let (Some(cut), Some(parts)) = (cut.filter(|_| source.parts > Some(1)), source.parts)
         && cut != parts
     {
@@ -247,12 +248,35 @@ fn read_file(source: &MeshSource, file: &Path, processes: Processes) -> Result<(
         let error = Diagnostic::error(&place, found).remedy(format!("set parts = {cut}, or save all parts at once"));
         return Err(Failure::Input(Diagnostics(vec![error])));
     }
-    let mut mesh =
-        fractum_mesh::read_mesh(&bytes).map_err(|error| fail(source, format!(": {}: {error}", file.display()), ""))?;
+    let mut mesh = gathered.read().map_err(|error| unreadable(source, file, &error))?;
     if source.is_one_body {
         mesh.add_group_of_all(WHOLE_MESH);
     }
-    Ok((mesh, xxh3_128(&bytes)))
+    Ok((mesh, xxh3_128(gathered.bytes())))
+}
+
+/// A file of the mesh with those that it names.
+fn gathered(source: &MeshSource, file: &Path) -> Result<Gathered, Failure> {
+    gather_mesh(file, bytes_of(source, file)?).map_err(|error| unreadable(source, file, &error))
+}
+
+/// Puts the files that a mesh file names in their places; their paths are taken from its folder.
+///
+/// - `bytes`: those of the file itself
+///
+/// # Errors
+/// As [`Gathered::new`].
+pub fn gather_mesh(file: &Path, bytes: Vec<u8>) -> Result<Gathered, MeshError> {
+    let folder = file.parent().unwrap_or(Path::new(""));
+    Gathered::new(bytes, |name| {
+        let further = folder.join(name.replace('\\', "/"));
+        refuse_endless(&further).map_err(|error| format!("it {error}"))?;
+        fs::read(&further).map_err(|error| error.to_string())
+    })
+}
+
+fn unreadable(source: &MeshSource, file: &Path, error: &MeshError) -> Failure {
+    fail(source, format!(": {}: {error}", file.display()), "")
 }
 
 fn fail(source: &MeshSource, found: String, remedy: &str) -> Failure {

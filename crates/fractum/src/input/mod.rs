@@ -26,7 +26,7 @@ use crate::solver::choice::choose;
 use crate::terminal::Stream;
 use memory::check_memory;
 pub(crate) use mesh_files::mesh_hash;
-pub use mesh_files::mesh_of_case;
+pub use mesh_files::{gather_mesh, mesh_of_case};
 
 /// A case with its mesh and the scene made of both.
 pub struct Input {

@@ -68,6 +68,7 @@ impl Simulation {
                 ppv: self.recorder.attenuations(),
                 largest_overlap: self.recorder.largest_overlap().cloned(),
             },
+            mesh: self.about.mesh.clone(),
             warnings: self.messages.warnings().to_vec(),
             time: summary::time(&clock, reason, self.counts_load()),
             modes: modes_of(&self.scene).map(modes::of_summary),

@@ -131,13 +131,14 @@ impl Simulation {
         let folder = ranks.folder(&results);
         let identity = identity(&input);
         let plan = Plan::new(&input);
-        let Input { case, mesh_hash, built, later, timings, .. } = input;
+        let Input { case, mesh, mesh_hash, built, later, timings, .. } = input;
         let about = About {
             results: results.clone(),
             identity,
             case_hash: case.hash(),
             origin: origin(&case, mesh_hash, options, &folder),
             plan,
+            mesh: mesh.notices,
         };
         if !options.quiet && !options.is_later_pass() {
             tell_plan(&about.plan, goes_on, &folder);
