@@ -172,7 +172,7 @@ fn roughness(table: &Table<'_>, smooth: f64) -> Option<Option<Roughness>> {
     let coefficient = coefficient.check(|own| *own > 0.0 && *own <= 20.0, "above 0, at most 20").required();
     let wall_strength = table.quantity("joint_wall_strength").physical().usual(&STRENGTH).required();
     let peak_slip = table.quantity("peak_slip").positive().or_if_absent(f64::INFINITY);
-    if smooth < fractum_math::tan(LEAST_BESIDE_ROUGHNESS.to_radians()) {
+    if smooth < fractum_math::elementary::tan(LEAST_BESIDE_ROUGHNESS.to_radians()) {
         let note = Diagnostic::error(&table.place_below("joint_roughness"), "beside less friction of worn sides");
         let expected = format!("residual_friction_angle of {LEAST_BESIDE_ROUGHNESS} deg at least");
         table.reader.note(note.expected(&expected).remedy("set it: rock joints have 20 to 40 deg"));
