@@ -50,6 +50,7 @@ mod refine;
 pub mod renumber;
 mod tagged;
 pub mod topology;
+mod trail;
 mod vtk;
 
 pub use abaqus::{Gathered, read_inp};
@@ -67,6 +68,7 @@ pub use mesh::{CutFace, Group, Mesh, WholeMesh};
 pub use neighbour::{halved, scrambled};
 pub use refine::{RefineError, RefineOptions, Refined, bytes_to_refine, longest_edge, refined};
 pub use tagged::{MeshError, Place, Problem};
+pub use trail::{Ridge, RidgeError, SplitError, Spot, ridge};
 pub use vtk::read_vtu;
 
 /// The formats beside Gmsh's, for messages.
