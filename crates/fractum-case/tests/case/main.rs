@@ -3,6 +3,7 @@
 mod bedding;
 mod hash_and_overrides;
 mod keys;
+mod line;
 mod mistakes;
 mod reading;
 mod robustness;
