@@ -42,6 +42,9 @@ pub struct Pass {
     /// Size of elements where damage came [m].
     #[serde(with = "or_null")]
     pub size: f64,
+    /// Whether its crack runs along a line of its mesh.
+    #[serde(default)]
+    pub line: bool,
     /// Elements of solids.
     pub elements: u64,
     /// How it ended, in a word.
@@ -125,6 +128,25 @@ pub fn estimate(sizes: &[f64], peaks: &[f64], known: Known) -> Option<[f64; 2]> 
     Some([value * unit / (1.0 + left), half * unit.abs()])
 }
 
+/// Loads of cracks along lines that runs with damage have found: the share by which they are too high and its standard deviation from crack to crack, the standard
+/// deviation from line to line, and the number of lines that this knowledge of the latter is worth. Chosen on the same cracks.
+const OF_LINES: [f64; 4] = [0.004, 0.006, 0.004, 4.0];
+
+/// Value and half of its bar from the peaks of passes along lines; none without two of them.
+pub fn of_lines(peaks: &[f64]) -> Option<[f64; 2]> {
+    let count = peaks.len() as f64;
+    let mean = peaks.iter().sum::<f64>() / count;
+    if peaks.len() < 2 || mean == 0.0 {
+        return None;
+    }
+    let [above, spread, scatter, weight] = OF_LINES;
+    let squares: f64 = peaks.iter().map(|peak| (peak / mean - 1.0).powi(2)).sum();
+    let freedom = weight + count - 1.0;
+    let variance = (weight * scatter * scatter + squares) / freedom;
+    let half = quantile(freedom) * (variance / count + spread * spread).sqrt();
+    Some([mean / (1.0 + above), half * mean.abs()])
+}
+
 /// Within how many standard deviations nine of ten values lie, by Student's distribution with so many degrees of freedom.
 ///
 /// The expansion of Cornish and Fisher about the normal distribution, Abramowitz and Stegun 26.7.5; 0.5 % off at 2 degrees.
@@ -170,6 +192,20 @@ mod tests {
         // What does not depend on the mesh has no bar.
         let [value, half] = estimate(&sizes, &[3.0; 4], OF_OTHERS).unwrap();
         assert!((value - 3.0).abs() < 1e-12 && half < 1e-9, "{value} {half}");
+    }
+
+    #[test]
+    fn lines_tell_more_than_damage_and_their_scatter_lengthens_the_bar() {
+        let [value, half] = of_lines(&[100.4, 100.4]).unwrap();
+        // Two lines alike: four fifths of the known variance of one, and Student's factor for five degrees of freedom.
+        let exact = 100.4 * 2.015 * (0.8 * 0.004f64.powi(2) / 2.0 + 0.006f64.powi(2)).sqrt();
+        assert!((value - 100.0).abs() < 1e-12 && (half / exact - 1.0).abs() < 0.003, "{value} {half} {exact}");
+        assert_eq!(of_lines(&[-100.4e3, -100.4e3]).map(|own| own.map(f64::abs)), Some([1e3 * value, 1e3 * half]));
+        let [_, wide] = of_lines(&[98.4, 102.4]).unwrap();
+        let [_, sure] = of_lines(&[100.4; 8]).unwrap();
+        assert!(wide > 1.5 * half && sure < 0.95 * half, "{wide} {sure}");
+        assert_eq!(of_lines(&[100.0]), None);
+        assert_eq!(of_lines(&[]), None);
     }
 
     /// Random lines about what is known: nine of ten bars hold the truth.

@@ -71,6 +71,8 @@ pub struct Options {
     pub cache: Cache,
     /// A pass of a case that asks for an accuracy: it leaves `damaged.json`, and all but the first leave plan and warnings to their logs.
     pub pass: Option<usize>,
+    /// A pass whose crack runs along lines of its mesh: about when its load is largest [s].
+    pub line: Option<f64>,
 }
 
 impl Options {

@@ -157,14 +157,14 @@ pub(crate) fn cells_with(solid: &Solid, (block, cell): (u32, u32)) -> (Cow<'_, C
 }
 
 /// Elements of a body with more damage than that: centre in the undeformed body, and edge of the regular element of the same size [m].
-pub fn damaged_elements(solid: &Solid, index: usize, above: f64) -> Vec<(Vec3, f64)> {
+pub fn damaged_elements(solid: &Solid, index: usize, above: f64) -> Vec<(Vec3, f64, f64)> {
     let body = &solid.bodies[index].body;
     let count = body.shape.node_count();
     let of_element = |(element, damage): (&[u32; 4], f64)| {
         let corners = element.map(|node| solid.reference[node as usize]);
         let centre = corners[..count].iter().sum::<Vec3>() / count as f64;
         let (measure, _) = measure_and_gradients(body.shape, &corners);
-        (damage > above).then(|| (centre, regular_edge(body.shape, measure)))
+        (damage > above).then(|| (centre, regular_edge(body.shape, measure), damage))
     };
     body.elements.iter().zip(element_damages(solid, index)).filter_map(of_element).collect()
 }

@@ -1,9 +1,10 @@
 //! A case that asks for an accuracy: it runs on the mesh as it is, then on meshes that are finer where damage came, until the error bar of its load is as
-//! short as asked.
+//! short as asked. Where it can be told where the crack runs, passes along a line of the mesh tell most.
 //!
 //! Every pass is a run of its own in a folder of its own, which has its mesh; one that has finished is not run again, and one that was interrupted goes on.
 //! The results of the finest pass become those of the case, with the estimates beside them.
 
+mod line;
 mod publish;
 mod zone;
 
@@ -14,7 +15,7 @@ use fractum_case::model::{AskedAccuracy, Material, SolverKind, WHOLE_MESH, load_
 use fractum_case::{Case, Diagnostic, Diagnostics};
 use fractum_fem::CriterionKind;
 use fractum_mesh::{Mesh, MshFormat, RefineError, RefineOptions, refined, write_msh};
-use fractum_output::accuracy::{Estimate, Known, OF_FIELDS, OF_LOADS, OF_OTHERS, Pass, estimate};
+use fractum_output::accuracy::{Estimate, Known, OF_FIELDS, OF_LOADS, OF_OTHERS, Pass, estimate, of_lines};
 use fractum_output::atomic;
 use fractum_output::number::{grouped, quantity, significant};
 use fractum_output::study::run::Planned;
@@ -47,11 +48,23 @@ const MOST: usize = 300_000;
 const GROWTH: usize = 6;
 const LITTLE: usize = 10_000;
 
-/// Passes, with that on the mesh of the user, before the first bar is believed.
+/// Passes with damage, with that on the mesh of the user, before the first bar is believed; or passes along lines.
 const LEAST: usize = 6;
+const LEAST_LINES: usize = 2;
 
 /// What is left at the end of the peak of a load, where a pass has gone beyond it.
 const PASSED: f64 = 0.98;
+
+/// What a pass is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// It looks where the crack goes, without a phase field, which its elements may be too large for.
+    Coarse,
+    /// It tells how late the crack runs.
+    Fine,
+    /// Its crack runs along a line of its mesh: about when its load is largest, and the size of its elements [m].
+    Line { peak: f64, size: f64 },
+}
 
 /// The passes of a case.
 struct Passes<'a> {
@@ -91,13 +104,16 @@ pub(crate) fn run(
     let (base, _) = mesh_of_case(case)?;
     let untried = untried(case, &base);
     let mut passes = Passes { case, path, options, folder: results.join(PASSES), load, untried, done: Vec::new() };
-    passes.add("1-as-meshed", None, true)?;
+    passes.add("1-as-meshed", None, Kind::Coarse)?;
     passes.refuse_warnings(&passes.warnings_of(0), results)?;
-    passes.tell_last(asked);
+    passes.tell_last();
     while passes.goes_on(asked) {
-        let (mesh, name, is_coarse) = passes.mesh(&base, asked)?;
-        passes.add(&name, Some(&mesh), is_coarse)?;
-        passes.tell_last(asked);
+        let (mesh, name, kind) = passes.mesh(&base, asked)?;
+        passes.add(&name, Some(&mesh), kind)?;
+        passes.tell_last();
+        if !passes.is_interrupted() {
+            passes.add_line(&base)?;
+        }
     }
     let (finest, particles) = (passes.finest(), passes.done[0].1.counts.particles);
     let measure = Measure { processor: None, size: passes.done[finest].0.size, particles };
@@ -149,8 +165,9 @@ impl Passes<'_> {
 
     /// Whether another pass is to follow.
     fn goes_on(&self, asked: &AskedAccuracy) -> bool {
-        let count = self.done.len();
-        let is_met = count >= LEAST && self.reached().is_some_and(|reached| reached <= asked.share.value);
+        let count = self.done.iter().filter(|(pass, ..)| !pass.line).count();
+        let are_enough = count >= LEAST || self.counted(true).count() >= LEAST_LINES;
+        let is_met = are_enough && self.reached().is_some_and(|reached| reached <= asked.share.value);
         let is_elastic = count == 1 && self.done[0].2.is_empty();
         !is_met && !is_elastic && !self.is_interrupted() && count < asked.most_runs
     }
@@ -161,7 +178,7 @@ impl Passes<'_> {
 
     /// The pass with the smallest elements whose peaks count; the first where none does.
     fn finest(&self) -> usize {
-        let counts = |index: &usize| self.done[*index].0.left_out.is_empty();
+        let counts = |index: &usize| self.done[*index].0.left_out.is_empty() && !self.done[*index].0.line;
         let size = |index: &usize| self.done[*index].0.size;
         (1..self.done.len()).filter(counts).min_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(0)
     }
@@ -169,11 +186,10 @@ impl Passes<'_> {
     /// Does a pass, unless it has been done before.
     ///
     /// - `mesh`: file of its mesh; none for that of the case
-    /// - `is_coarse`: it looks where the crack goes, without a phase field, which its elements may be too large for
-    fn add(&mut self, name: &str, mesh: Option<&Path>, is_coarse: bool) -> Result<(), Failure> {
+    fn add(&mut self, name: &str, mesh: Option<&Path>, kind: Kind) -> Result<(), Failure> {
         let mut overrides = self.options.overrides.clone();
         let fields = self.case.materials.iter().filter(|material| has_field(material));
-        if is_coarse {
+        if kind == Kind::Coarse {
             let none = |material: &Material| format!("materials.{}.damage.regularisation", material.name.value);
             overrides.extend(fields.map(|material| (none(material), "\"none\"".to_owned())));
         }
@@ -185,18 +201,20 @@ impl Passes<'_> {
         let key = if self.case.source.stage.is_empty() { "solver.accuracy" } else { "stages[*].solver.accuracy" };
         overrides.push((key.to_owned(), "0".to_owned()));
         let planned = Planned { name: name.to_owned(), case: self.path.to_owned(), overrides, ..Planned::default() };
-        let options = Options { pass: Some(self.done.len()), strict: false, ..self.options.clone() };
+        let peak = if let Kind::Line { peak, .. } = kind { Some(peak) } else { None };
+        let options = Options { pass: Some(self.done.len()), line: peak, strict: false, ..self.options.clone() };
         let summary = summary_of(&planned, &self.folder, &options)?;
         let damaged = Damaged::read(&self.folder.join(name));
-        let mut pass = self.pass(name, &summary, &damaged);
-        if is_coarse && mesh.is_some() && self.has_field() {
+        let mut pass = self.pass(name, &summary, &damaged, kind);
+        if kind == Kind::Coarse && mesh.is_some() && self.has_field() {
             pass.left_out = "without its phase field".to_owned();
         }
         self.done.push((pass, summary, damaged));
         Ok(())
     }
 
-    fn pass(&self, name: &str, summary: &Summary, damaged: &Damaged) -> Pass {
+    fn pass(&self, name: &str, summary: &Summary, damaged: &Damaged, kind: Kind) -> Pass {
+        let line = if let Kind::Line { size, .. } = kind { Some(size) } else { None };
         let of_probe = |probe: &fractum_output::summary::Probe| {
             if probe.min.abs() > probe.max.abs() { probe.min } else { probe.max }
         };
@@ -207,7 +225,10 @@ impl Passes<'_> {
         let (peak, end) = (peaks.get(load).copied().unwrap_or(f64::NAN), summary.probes.get(load));
         let has_passed = end.is_some_and(|probe| probe.r#final.abs() < PASSED * peak.abs());
         let left_out = match summary.status {
-            _ if damaged.is_empty() => "no damage".to_owned(),
+            // At rest a load behind its peak often has no equilibrium; it has none beyond the peak of a force.
+            Status::Stopped if line.is_some() => self.wrong_line(peak),
+            _ if line.is_some() && has_passed => self.wrong_line(peak),
+            _ if line.is_none() && damaged.is_empty() => "no damage".to_owned(),
             Status::Stopped if !has_passed => format!("stopped before its peak: {}", summary.time.reason),
             // What grows to the end says nothing of the crack that stops it.
             _ if !has_passed => "its load did not fall".to_owned(),
@@ -215,7 +236,8 @@ impl Passes<'_> {
         };
         Pass {
             name: name.to_owned(),
-            size: damaged.size(),
+            size: line.unwrap_or_else(|| damaged.size()),
+            line: line.is_some(),
             elements: summary.counts.elements,
             end: status_text(summary.status).to_owned(),
             left_out,
@@ -230,20 +252,23 @@ impl Passes<'_> {
         damaged.map(|damaged| damaged.length).fold(f64::INFINITY, f64::min)
     }
 
-    /// Passes whose peaks count: those on refined meshes.
-    fn counted(&self) -> impl Iterator<Item = &Pass> {
-        self.done.iter().skip(1).map(|(pass, _, _)| pass).filter(|pass| pass.left_out.is_empty())
+    /// Passes whose peaks count: those on refined meshes, along lines or with damage.
+    fn counted(&self, line: bool) -> impl Iterator<Item = &Pass> {
+        let counts = move |pass: &&Pass| pass.left_out.is_empty() && pass.line == line;
+        self.done.iter().skip(1).map(|(pass, _, _)| pass).filter(counts)
     }
 
     /// Estimate of the peak of a probe.
     fn estimate(&self, name: &str, unit: &str) -> Option<Estimate> {
         let length = self.length();
-        let sizes: Vec<f64> = self.counted().map(|pass| pass.size / length).collect();
-        let peaks =
-            |name: &str| -> Option<Vec<f64>> { self.counted().map(|pass| pass.peaks.get(name).copied()).collect() };
-        let (own, loads) = (peaks(name)?, peaks(&self.load.0)?);
+        let sizes: Vec<f64> = self.counted(false).map(|pass| pass.size / length).collect();
+        let peaks = |name: &str, line: bool| -> Option<Vec<f64>> {
+            self.counted(line).map(|pass| pass.peaks.get(name).copied()).collect()
+        };
+        let (own, loads, lines) = (peaks(name, false)?, peaks(&self.load.0, false)?, peaks(&self.load.0, true)?);
         let [value, half] = match proportion(&own, &loads) {
             // The load itself, or what is made of it, such as a strength.
+            Some(ratio) if lines.len() >= LEAST_LINES => of_lines(&lines)?.map(|value| ratio * value),
             Some(ratio) => estimate(&sizes, &loads, self.of_loads())?.map(|value| ratio * value),
             None => estimate(&sizes, &own, OF_OTHERS)?,
         };
@@ -272,7 +297,7 @@ impl Passes<'_> {
 
     /// Size of the elements of the next pass [m].
     fn next_size(&self) -> f64 {
-        let sizes = || self.done.iter().map(|(pass, ..)| pass.size);
+        let sizes = || self.done.iter().filter(|(pass, ..)| !pass.line).map(|(pass, ..)| pass.size);
         let first = self.first_size();
         // Around a crack that a very coarse mesh has found fine elements would be many.
         let nearest = sizes().fold(f64::INFINITY, f64::min) / STEP;
@@ -287,14 +312,13 @@ impl Passes<'_> {
         if near.is_empty() { Zone::around(all()) } else { Zone::around(near.into_iter()) }
     }
 
-    /// File of the mesh of the next pass, the name of the pass, and whether its elements are larger than those of the first that tell how late cracks run.
-    fn mesh(&self, base: &Mesh, asked: &AskedAccuracy) -> Result<(PathBuf, String, bool), Failure> {
+    /// File of the mesh of the next pass, the name of the pass, and what it is for.
+    fn mesh(&self, base: &Mesh, asked: &AskedAccuracy) -> Result<(PathBuf, String, Kind), Failure> {
         let number = self.done.len();
         let seed = |_| Some(number as u64);
         let mut size = self.next_size();
-        let last = self.done.last().map_or(0, |(pass, ..)| pass.elements as usize);
-        let most = (GROWTH * last).clamp(LITTLE, MOST).max(2 * base.element_count());
-        let mut mesh = loop {
+        let most = self.most_elements(base);
+        let mesh = loop {
             let zone = self.zone(size);
             let wanted = |at| if zone.contains(at) { size / SIZE_OF_EDGE } else { f64::INFINITY };
             match refined(base, &wanted, RefineOptions { seed: &seed, most }) {
@@ -308,29 +332,44 @@ impl Passes<'_> {
                 }
             }
         };
+        let (file, name) = self.write_mesh(mesh, "refined")?;
+        Ok((file, name, if size > 1.5 * self.first_size() { Kind::Coarse } else { Kind::Fine }))
+    }
+
+    /// Elements of the next pass at most.
+    fn most_elements(&self, base: &Mesh) -> usize {
+        let last = self.done.last().map_or(0, |(pass, ..)| pass.elements as usize);
+        (GROWTH * last).clamp(LITTLE, MOST).max(2 * base.element_count())
+    }
+
+    /// Lengths of a file are scaled as those of the case are.
+    fn scale(&self) -> f64 {
+        self.case.source.verify.scale.unwrap_or(1.0)
+    }
+
+    /// File of the mesh of the next pass, and the name of the pass.
+    fn write_mesh(&self, mut mesh: Mesh, kind: &str) -> Result<(PathBuf, String), Failure> {
         mesh.groups.retain(|group| group.name != WHOLE_MESH);
-        // Lengths of a file are scaled as those of the case are.
-        let scale = self.case.source.verify.scale.unwrap_or(1.0);
+        let scale = self.scale();
         mesh.nodes.iter_mut().for_each(|node| *node /= scale);
-        let name = format!("{}-refined", number + 1);
+        let name = format!("{}-{kind}", self.done.len() + 1);
         let folder = self.folder.join(&name);
         atomic::create_folder(&folder)?;
         let file = folder.join(MESH);
         atomic::write_with(&file, |out| write_msh(&mesh, MshFormat::V4_1Binary, out))?;
-        Ok((file, name, size > 1.5 * self.first_size()))
+        Ok((file, name))
     }
 
     /// A line on what the last pass came to.
-    fn tell_last(&self, asked: &AskedAccuracy) {
+    fn tell_last(&self) {
         let Some((pass, _, _)) = self.done.last().filter(|_| !self.options.quiet) else { return };
         let (load, unit) = &self.load;
         let peak = pass.peaks.get(load).copied().unwrap_or(f64::NAN);
         let estimate = self.estimate(load, unit).map(|estimate| format!("; so far {}", estimate.words()));
         let end = if pass.left_out.is_empty() { String::new() } else { format!(" ({})", pass.left_out) };
         tell!(
-            "pass {} of at most {}: {} elements, {} where damage came; peak of {load} {}{end} in {} s{}",
-            self.done.len(),
-            asked.most_runs,
+            "pass {}: {} elements, {} at the crack; peak of {load} {}{end} in {} s{}",
+            pass.name,
             grouped(&pass.elements.to_string()),
             quantity(pass.size, "m"),
             quantity(peak, unit),

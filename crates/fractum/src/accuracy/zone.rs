@@ -21,7 +21,7 @@ impl Zone {
     /// Around the damaged elements of some runs.
     pub(super) fn around<'a>(runs: impl Iterator<Item = &'a Damaged>) -> Self {
         let balls: Vec<[f64; 4]> =
-            runs.flat_map(|run| &run.elements).map(|&[x, y, z, size]| [x, y, z, AROUND * size]).collect();
+            runs.flat_map(|run| &run.elements).map(|&[x, y, z, size, _]| [x, y, z, AROUND * size]).collect();
         let cell = balls.iter().map(|ball| ball[3]).fold(f64::MIN_POSITIVE, f64::max);
         let mut zone = Zone { cells: HashMap::new(), cell };
         for ball in balls {
@@ -50,7 +50,7 @@ mod tests {
 
     #[test]
     fn a_zone_is_made_of_balls_of_three_sizes() {
-        let run = Damaged { length: 1.0, elements: vec![[0.0, 0.0, 0.0, 0.1], [1.0, 0.0, 0.0, 0.01]] };
+        let run = Damaged { length: 1.0, elements: vec![[0.0, 0.0, 0.0, 0.1, 1.0], [1.0, 0.0, 0.0, 0.01, 1.0]] };
         let zone = Zone::around([&run].into_iter());
         let is_in = |x: f64, y: f64| zone.contains(Vec3::new(x, y, 0.0));
         assert!(is_in(0.29, 0.0) && is_in(-0.2, -0.2) && is_in(1.02, -0.02));

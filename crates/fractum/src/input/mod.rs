@@ -59,7 +59,7 @@ pub fn load(path: &Path, overrides: &[(String, String)], cache: &Cache) -> Resul
     let processes = Processes::default();
     // For who waits at a terminal; no part of what a program reads.
     let quiet = Stream::Error.width().is_none();
-    read(path, overrides, processes)?.join(None)?.prepare(cache, processes, quiet)?.build(None)
+    read(path, overrides, None, processes)?.join(None)?.prepare(cache, processes, quiet)?.build(None)
 }
 
 /// A case with what this process has read of its mesh.
@@ -70,12 +70,21 @@ pub(crate) struct Source {
 
 /// Reads a case and the files of its mesh that are for this process.
 ///
+/// - `line`: about when the load is largest [s], where the crack runs along a line of the mesh, see [`Case::run_along_line`]
 /// - `processes`: those that run it together
 ///
 /// # Errors
 /// As [`load`].
-pub(crate) fn read(path: &Path, overrides: &[(String, String)], processes: Processes) -> Result<Source, Failure> {
-    let case = read_case(path, overrides)?;
+pub(crate) fn read(
+    path: &Path,
+    overrides: &[(String, String)],
+    line: Option<f64>,
+    processes: Processes,
+) -> Result<Source, Failure> {
+    let mut case = read_case(path, overrides)?;
+    if let Some(peak) = line {
+        case.run_along_line(peak);
+    }
     let mesh = MeshFiles::read(&case, processes)?;
     Ok(Source { case, mesh })
 }

@@ -24,8 +24,8 @@ const DAMAGED: f64 = 0.3;
 pub(crate) struct Damaged {
     /// Process zone and smallest extent in series, the least of the bodies that are damaged [m].
     pub(crate) length: f64,
-    /// Centres and sizes of the damaged elements [m].
-    pub(crate) elements: Vec<[f64; 4]>,
+    /// Centres and sizes of the damaged elements [m], and their damage.
+    pub(crate) elements: Vec<[f64; 5]>,
 }
 
 impl Damaged {
@@ -48,7 +48,7 @@ impl Damaged {
             let extent = body.smallest_extent(&scene.solid.reference);
             let length = crack_scale(zone.unwrap_or(f64::INFINITY), extent);
             found.length = found.length.min(length);
-            found.elements.extend(elements.into_iter().map(|(at, size)| [at.x, at.y, at.z, size]));
+            found.elements.extend(elements.into_iter().map(|(at, size, damage)| [at.x, at.y, at.z, size, damage]));
         }
         found
     }

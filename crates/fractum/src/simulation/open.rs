@@ -52,7 +52,7 @@ impl Simulation {
             // Before anything is prepared, which may take long.
             results_folder(path, options)?;
             ranks.check(path, &options.overrides)?;
-            read(path, &options.overrides, ranks.processes())
+            read(path, &options.overrides, options.line, ranks.processes())
         };
         // What they do together waits until all have done what each does by itself.
         let source = ranks.together(source())?;
