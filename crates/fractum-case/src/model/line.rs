@@ -69,6 +69,7 @@ impl Case {
             dilation_slip: f64::INFINITY,
             mixed_mode: MixedMode::Power(1.0),
             softening,
+            roughness: None,
         })
     }
 
