@@ -39,7 +39,16 @@ pub(super) fn odd_reactions(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Dia
     let by_place = case.supports.iter().any(|support| support.on.within.is_some());
     let odd = |group: &Spanned<String>| {
         let nodes = mesh.group_nodes(&group.value);
+        // Nodes in common with another body are doubled along interfaces.
+        let is_beside = |own: &String| {
+            own != &group.value
+                && !case.interfaces.is_empty()
+                && bodies.iter().any(|body| &body.solid.group.value == own)
+        };
         let of_support = |support: &Support| {
+            if support.on.group.as_ref().is_some_and(|own| is_beside(&own.value)) {
+                return Vec::new();
+            }
             let own = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value)).unwrap_or_default();
             own.into_iter().filter(|node| nodes.binary_search(node).is_ok()).collect::<Vec<u32>>()
         };
