@@ -4,7 +4,7 @@
     python passes.py PROGRAM [FOLDER] [--phase-field] [NAME ...]
 
 Each scene begins on squares of its `size` that are cut into triangles. A line tells how far the estimate is from the exact load, half of its bar, whether the
-bar holds the truth, the time of all passes, and how far each pass is off.
+bar holds the truth, the time of all passes, and how far each pass is off; an L stands before passes along a line.
 """
 
 import json
@@ -144,7 +144,7 @@ def main():
         load = accuracy["probes"]["load"]
         off, half = load["value"] / exact - 1, load["half"] / exact
         held.append(abs(off) <= half)
-        passes = " ".join(f"{one['size'] / accuracy['length']:.3f}:{one['peaks']['load'] / exact - 1:+.1%}" for one in accuracy["passes"])
+        passes = " ".join(f"{'L' if one['line'] else ''}{one['size'] / accuracy['length']:.3f}:{one['peaks']['load'] / exact - 1:+.1%}" for one in accuracy["passes"])
         print(f"{name:10} {off:+.1%}, bar {half:.1%}, {'held' if held[-1] else 'MISSED'}, {took:.0f} s; {passes}", flush=True)
     print(f"{sum(held)} of {len(held)} bars hold the exact load")
 

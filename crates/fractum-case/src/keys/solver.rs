@@ -54,7 +54,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.stop_when.after", K::Quantity(D::TIME), "\"0 s\"", "Not before this time"),
     key("solver.stop_when.lasting", K::Quantity(D::TIME), "a quarter of the time to the largest value, or 0 s below half of it", "The run ends once the probe has stayed below for so long, so that a small drop before the peak ends no run; \"0 s\" ends it at the first drop"),
     key("solver.accuracy", K::Quantity(D::NONE), "one run", "How far from the load of a crack on an endlessly fine mesh the result may be, from 0.2 % to 50 %: several runs on meshes that are refined where damage came, whose peaks get error bars; 0 for one run"),
-    key("solver.accuracy_runs", K::Integer, "12", "Runs for it at most, 4 to 100"),
+    key("solver.accuracy_runs", K::Integer, "12", "Runs with damage for it at most, 4 to 100; those along a line of the crack come beside"),
     key("solver.balance_warning", K::Quantity(D::NONE), "1e-3", "Energy imbalance over external work at which to warn, > 0"),
     key("solver.balance_stop", K::Quantity(D::NONE), "1e-2", "Energy imbalance over external work at which to stop, ≥ balance_warning"),
 ];
