@@ -245,7 +245,6 @@ fn renumbered(mesh: &Mesh, same: &[u32]) -> Mesh {
     joined.points.as_flattened_mut().iter_mut().for_each(renumber);
     joined.lines.as_flattened_mut().iter_mut().for_each(renumber);
     joined.triangles.as_flattened_mut().iter_mut().for_each(renumber);
-    joined.quads.as_flattened_mut().iter_mut().for_each(renumber);
     joined.tetrahedra.as_flattened_mut().iter_mut().for_each(renumber);
     joined
 }

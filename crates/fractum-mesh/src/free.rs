@@ -39,7 +39,6 @@ pub(crate) fn free_nodes(mesh: &Mesh, around: &Ragged) -> Vec<bool> {
     let mut hold = |nodes: &[u32]| nodes.iter().for_each(|&node| free[node as usize] = false);
     mesh.points.iter().for_each(|nodes| hold(nodes));
     mesh.lines.iter().for_each(|nodes| hold(nodes));
-    mesh.quads.iter().for_each(|nodes| hold(nodes));
     if is_plane(mesh) {
         boundary_of_triangles(&mesh.triangles).iter().for_each(|edge| hold(&edge.nodes));
     } else {

@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_quadrilaterals_inner_facets_and_slivers_are_told() {
+    fn groups_inner_facets_and_slivers_are_told() {
         let good = structured_box([2, 2, 2], Vec3::new(1.0, 1.0, 1.0), None);
         assert!(said(&Mesh { groups: Vec::new(), ..good.clone() }).starts_with("no groups: "));
         let mut mesh = good.clone();

@@ -37,7 +37,7 @@ pub enum JoinError {
 
 /// The mesh of some parts: nodes in the order of their tags, elements in the order of the parts.
 ///
-/// Points, lines, triangles and quadrilaterals are taken once where several parts list them, and those of no group are left out: Gmsh adds such
+/// Points, lines and triangles are taken once where several parts list them, and those of no group are left out: Gmsh adds such
 /// where parts meet. Joining parts that were joined of others gives the same as joining all of these at once.
 ///
 /// # Errors
@@ -55,8 +55,6 @@ pub fn joined(parts: &[Mesh]) -> Result<Mesh, JoinError> {
         |group| &group.triangles,
         |group| &mut group.triangles,
     );
-    let (quads, quad_tags) =
-        join.once(|mesh| (&mesh.quads, &mesh.quad_tags), |group| &group.quads, |group| &mut group.quads);
     let (tetrahedra, tetrahedron_tags) = join.all();
     refuse_doubled(&tetrahedron_tags)?;
     let mut notices: Vec<String> = Vec::new();
@@ -74,8 +72,6 @@ pub fn joined(parts: &[Mesh]) -> Result<Mesh, JoinError> {
         line_tags,
         triangles,
         triangle_tags,
-        quads,
-        quad_tags,
         tetrahedra,
         tetrahedron_tags,
         groups,

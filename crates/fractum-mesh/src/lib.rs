@@ -7,7 +7,7 @@
 //! - [`joined_bodies`]: bodies of which each has nodes of its own, joined where their faces conform
 //! - [`Mesh::cut`]: nodes doubled along faces inside of a mesh
 //! - [`refined`]: smaller elements where they are asked for; [`halved`] everywhere; [`scrambled`]: another mesh of the same size
-//! - [`Mesh`]: points, lines, triangles, quadrilaterals and tetrahedra with named [`Group`]s
+//! - [`Mesh`]: points, lines, triangles and tetrahedra with named [`Group`]s
 //! - [`topology`]: edges, facets, outward boundary, elements of a node
 //! - [`quality`]: volumes, altitudes, lengths of edges, radius ratios, dihedral angles; [`hints`] says what to mend
 //! - [`bodies`]: each group that a body may be made of, and how they lie beside each other

@@ -22,10 +22,6 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// The file's tag of each triangle.
     pub triangle_tags: Vec<u64>,
-    /// Four-node quadrilaterals, for tool surfaces.
-    pub quads: Vec<[u32; 4]>,
-    /// The file's tag of each quadrilateral.
-    pub quad_tags: Vec<u64>,
     /// Four-node tetrahedra (T4) of positive volume.
     pub tetrahedra: Vec<[u32; 4]>,
     /// The file's tag of each tetrahedron.
@@ -77,8 +73,6 @@ pub struct Group {
     pub lines: Vec<u32>,
     /// Triangles (dimension 2).
     pub triangles: Vec<u32>,
-    /// Quadrilaterals (dimension 2).
-    pub quads: Vec<u32>,
     /// Tetrahedra (dimension 3).
     pub tetrahedra: Vec<u32>,
 }
@@ -86,7 +80,7 @@ pub struct Group {
 impl Group {
     /// Number of elements of all kinds.
     pub fn element_count(&self) -> usize {
-        self.points.len() + self.lines.len() + self.triangles.len() + self.quads.len() + self.tetrahedra.len()
+        self.points.len() + self.lines.len() + self.triangles.len() + self.tetrahedra.len()
     }
 }
 
@@ -102,12 +96,12 @@ impl Mesh {
         self.groups.iter().map(|group| group.name.as_str()).filter(|name| seen.insert(*name)).collect()
     }
 
-    /// Adds a group of all tetrahedra, or of all plane elements where there are none.
+    /// Adds a group of all tetrahedra, or of all triangles where there are none.
     pub fn add_group_of_all(&mut self, name: &str) {
         let all = |count: usize| (0..count as u32).collect();
         let mut group = Group { name: name.to_owned(), dimension: 3, tag: i32::MAX, ..Group::default() };
         if self.tetrahedra.is_empty() {
-            (group.dimension, group.triangles, group.quads) = (2, all(self.triangles.len()), all(self.quads.len()));
+            (group.dimension, group.triangles) = (2, all(self.triangles.len()));
         } else {
             group.tetrahedra = all(self.tetrahedra.len());
         }
@@ -121,7 +115,6 @@ impl Mesh {
             push_nodes(&mut nodes, &self.points, &group.points);
             push_nodes(&mut nodes, &self.lines, &group.lines);
             push_nodes(&mut nodes, &self.triangles, &group.triangles);
-            push_nodes(&mut nodes, &self.quads, &group.quads);
             match &self.whole {
                 Some(whole) => nodes.extend(&whole.groups[index].1),
                 None => push_nodes(&mut nodes, &self.tetrahedra, &group.tetrahedra),
@@ -162,14 +155,13 @@ impl Mesh {
         self.point_tags = tags(self.points.len());
         self.line_tags = tags(self.lines.len());
         self.triangle_tags = tags(self.triangles.len());
-        self.quad_tags = tags(self.quads.len());
         self.tetrahedron_tags = tags(self.tetrahedra.len());
     }
 
     /// Highest tag of a node or element; 0 of an empty mesh.
     pub fn highest_tag(&self) -> u64 {
-        let Mesh { node_tags, point_tags, line_tags, triangle_tags, quad_tags, tetrahedron_tags, .. } = self;
-        let all = [node_tags, point_tags, line_tags, triangle_tags, quad_tags, tetrahedron_tags];
+        let Mesh { node_tags, point_tags, line_tags, triangle_tags, tetrahedron_tags, .. } = self;
+        let all = [node_tags, point_tags, line_tags, triangle_tags, tetrahedron_tags];
         all.into_iter().flatten().copied().max().unwrap_or(0)
     }
 
@@ -200,7 +192,7 @@ impl Mesh {
 
     /// Number of elements of all kinds.
     pub fn element_count(&self) -> usize {
-        self.points.len() + self.lines.len() + self.triangles.len() + self.quads.len() + self.tetrahedra.len()
+        self.points.len() + self.lines.len() + self.triangles.len() + self.tetrahedra.len()
     }
 }
 

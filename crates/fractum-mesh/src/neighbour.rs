@@ -6,7 +6,7 @@ use crate::free::{WORST_SHAPE, around_nodes, free_nodes};
 use crate::quality::{signed_volume, tetrahedron, triangle};
 use crate::{Group, Mesh, generate::unit_interval};
 
-/// The mesh with every edge halved: a triangle becomes 4, a quadrilateral 4, a tetrahedron 8 (the inner octahedron is cut along its
+/// The mesh with every edge halved: a triangle becomes 4, a tetrahedron 8 (the inner octahedron is cut along its
 /// shortest diagonal: Bey, *Computing* 55 (1995)). Groups keep their names and places; sides stay as straight as they are.
 ///
 /// The mesh must be whole; what is known of other processes is dropped.
@@ -15,26 +15,18 @@ pub fn halved(mesh: &Mesh) -> Mesh {
     let mid = |a: u32, b: u32| middles.of(a, b);
     let mut nodes = mesh.nodes.clone();
     nodes.extend(middles.edges.iter().map(|[a, b]| 0.5 * (mesh.nodes[*a as usize] + mesh.nodes[*b as usize])));
-    let first_centre = nodes.len() as u32;
-    nodes.extend(mesh.quads.iter().map(|quad| quad.map(|n| mesh.nodes[n as usize]).iter().sum::<Vec3>() / 4.0));
 
     let lines = mesh.lines.iter().flat_map(|&[a, b]| [[a, mid(a, b)], [mid(a, b), b]]).collect();
     let triangle = |&[a, b, c]: &[u32; 3]| {
         let [ab, bc, ca] = [mid(a, b), mid(b, c), mid(c, a)];
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     };
-    let quad = |(&[a, b, c, d], centre): (&[u32; 4], u32)| {
-        let [ab, bc, cd, da] = [mid(a, b), mid(b, c), mid(c, d), mid(d, a)];
-        [[a, ab, centre, da], [ab, b, bc, centre], [centre, bc, c, cd], [da, centre, cd, d]]
-    };
-    let quads: Vec<[u32; 4]> = mesh.quads.iter().zip(first_centre..).flat_map(quad).collect();
     let triangles: Vec<[u32; 3]> = mesh.triangles.iter().flat_map(triangle).collect();
     let tetrahedra: Vec<[u32; 4]> =
         mesh.tetrahedra.iter().flat_map(|&t| parts_of_tetrahedron(t, &middles, &nodes)).collect();
     let group = |group: &Group| Group {
         lines: children(&group.lines, 2),
         triangles: children(&group.triangles, 4),
-        quads: children(&group.quads, 4),
         tetrahedra: children(&group.tetrahedra, 8),
         ..group.clone()
     };
@@ -43,7 +35,6 @@ pub fn halved(mesh: &Mesh) -> Mesh {
         points: mesh.points.clone(),
         lines,
         triangles,
-        quads,
         tetrahedra,
         groups: mesh.groups.iter().map(group).collect(),
         notices: mesh.notices.clone(),
@@ -89,7 +80,6 @@ impl Middles {
     fn new(mesh: &Mesh) -> Self {
         let mut edges: Vec<[u32; 2]> = mesh.lines.clone();
         edges.extend(mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]));
-        edges.extend(mesh.quads.iter().flat_map(|&[a, b, c, d]| [[a, b], [b, c], [c, d], [d, a]]));
         let of_tetrahedron = |&[a, b, c, d]: &[u32; 4]| [[a, b], [a, c], [a, d], [b, c], [b, d], [c, d]];
         edges.extend(mesh.tetrahedra.iter().flat_map(of_tetrahedron));
         edges.iter_mut().for_each(|edge| edge.sort_unstable());

@@ -70,8 +70,6 @@ pub struct Renumbering {
     pub lines: Vec<u32>,
     /// Order of the triangles.
     pub triangles: Vec<u32>,
-    /// Order of the quadrilaterals.
-    pub quads: Vec<u32>,
     /// Order of the tetrahedra.
     pub tetrahedra: Vec<u32>,
 }
@@ -84,7 +82,6 @@ pub fn renumber_along_hilbert_curve(mesh: &Mesh) -> (Mesh, Renumbering) {
         points: order_of_centroids(&mesh.nodes, &mesh.points),
         lines: order_of_centroids(&mesh.nodes, &mesh.lines),
         triangles: order_of_centroids(&mesh.nodes, &mesh.triangles),
-        quads: order_of_centroids(&mesh.nodes, &mesh.quads),
         tetrahedra: order_of_centroids(&mesh.nodes, &mesh.tetrahedra),
     };
     (renumbering.apply(mesh), renumbering)
@@ -101,7 +98,6 @@ impl Renumbering {
             points: members(&group.points, &self.points),
             lines: members(&group.lines, &self.lines),
             triangles: members(&group.triangles, &self.triangles),
-            quads: members(&group.quads, &self.quads),
             tetrahedra: members(&group.tetrahedra, &self.tetrahedra),
             ..group.clone()
         };
@@ -114,8 +110,6 @@ impl Renumbering {
             line_tags: permute(&mesh.line_tags, &self.lines),
             triangles: elements(&mesh.triangles, &self.triangles, &new_node),
             triangle_tags: permute(&mesh.triangle_tags, &self.triangles),
-            quads: elements(&mesh.quads, &self.quads, &new_node),
-            quad_tags: permute(&mesh.quad_tags, &self.quads),
             tetrahedra: elements(&mesh.tetrahedra, &self.tetrahedra, &new_node),
             tetrahedron_tags: permute(&mesh.tetrahedron_tags, &self.tetrahedra),
             groups: mesh.groups.iter().map(group).collect(),
@@ -136,7 +130,6 @@ impl Renumbering {
             points: invert(&self.points),
             lines: invert(&self.lines),
             triangles: invert(&self.triangles),
-            quads: invert(&self.quads),
             tetrahedra: invert(&self.tetrahedra),
         }
     }

@@ -139,16 +139,14 @@ fn check(mesh: &Mesh) {
     mark(mesh.points.as_flattened());
     mark(mesh.lines.as_flattened());
     mark(mesh.triangles.as_flattened());
-    mark(mesh.quads.as_flattened());
     mark(mesh.tetrahedra.as_flattened());
     assert!(used.iter().all(|&used| used));
     assert!(mesh.tetrahedra.iter().all(|e| quality::signed_volume(e.map(|n| mesh.nodes[n as usize])) > 0.0));
-    let mut tags: Vec<u64> =
-        [&mesh.point_tags, &mesh.line_tags, &mesh.triangle_tags, &mesh.quad_tags, &mesh.tetrahedron_tags]
-            .into_iter()
-            .flatten()
-            .copied()
-            .collect();
+    let mut tags: Vec<u64> = [&mesh.point_tags, &mesh.line_tags, &mesh.triangle_tags, &mesh.tetrahedron_tags]
+        .into_iter()
+        .flatten()
+        .copied()
+        .collect();
     assert_eq!(tags.len(), mesh.element_count());
     tags.sort_unstable();
     assert!(tags.windows(2).all(|pair| pair[0] < pair[1]), "element tags are unique");
@@ -158,7 +156,6 @@ fn check(mesh: &Mesh) {
             (&group.points, mesh.points.len()),
             (&group.lines, mesh.lines.len()),
             (&group.triangles, mesh.triangles.len()),
-            (&group.quads, mesh.quads.len()),
             (&group.tetrahedra, mesh.tetrahedra.len()),
         ] {
             assert!(members.windows(2).all(|pair| pair[0] < pair[1]));

@@ -60,57 +60,56 @@ const PERIODIC: &[Row] = &[(2, 2, "right", 4, 5), (3, 1, "body", 24, 14)];
 const STORAGE: &[Row] = &[(3, 3, "body", 24, 14)];
 const SPARSE: &[Row] = &[(3, 1, "body", 2, 5)];
 
-/// File, nodes in use, points, lines, triangles, quads, tetrahedra, volume, groups.
-type File = (&'static str, usize, [usize; 5], f64, &'static [Row]);
+/// File, nodes in use, points, lines, triangles, tetrahedra, volume, groups.
+type File = (&'static str, usize, [usize; 4], f64, &'static [Row]);
 
 const FILES: &[File] = &[
-    ("all-22-ascii", 23, [12, 20, 44, 0, 48], 2.0, SAVED_WITHOUT_GROUPS),
-    ("all-41-binary", 23, [12, 20, 44, 0, 48], 2.0, BOXES),
-    ("boxes-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("boxes-22-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("boxes-41-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("boxes-41-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("data-22-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("data-41-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("ghosts-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("ghosts-41-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("layers-41-binary", 42, [24, 44, 72, 0, 60], 3.0, &[(3, 1, "simplices", 24, 14)]),
-    ("meshio-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BY_MESHIO),
-    ("meshio-22-binary", 14, [1, 1, 8, 0, 24], 1.0, BY_MESHIO),
-    ("meshio-41-ascii", 14, [1, 1, 8, 0, 24], 1.0, BY_MESHIO_41),
-    ("order3-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("parametric-22-ascii", 23, [12, 20, 44, 0, 48], 2.0, SAVED_WITHOUT_GROUPS),
-    ("parametric-22-binary", 23, [12, 20, 44, 0, 48], 2.0, SAVED_WITHOUT_GROUPS),
-    ("parametric-41-ascii", 23, [12, 20, 44, 0, 48], 2.0, BOXES),
-    ("parametric-41-binary", 23, [12, 20, 44, 0, 48], 2.0, BOXES),
-    ("parts-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("parts-22-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("parts-41-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("parts-41-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("periodic-41-ascii", 14, [0, 0, 4, 0, 24], 1.0, PERIODIC),
-    ("periodic-41-binary", 14, [0, 0, 4, 0, 24], 1.0, PERIODIC),
-    ("plane-22-ascii", 21, [0, 0, 22, 0, 0], 0.0, PLANE),
-    ("plane-22-binary", 21, [0, 0, 22, 0, 0], 0.0, PLANE),
-    ("plane-41-ascii", 21, [0, 0, 22, 0, 0], 0.0, PLANE),
-    ("plane-41-binary", 21, [0, 0, 22, 0, 0], 0.0, PLANE),
-    ("quadratic-22-ascii", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("quadratic-41-binary", 14, [1, 1, 8, 0, 24], 1.0, BOXES),
-    ("sparse-22-ascii", 5, [0, 0, 0, 0, 2], 0.5, SPARSE),
-    ("sparse-41-ascii", 5, [0, 0, 0, 0, 2], 0.5, SPARSE),
-    ("sparse-41-binary", 5, [0, 0, 0, 0, 2], 0.5, SPARSE),
-    ("storage-22-big", 14, [0, 0, 0, 0, 24], 1.0, STORAGE),
-    ("storage-22-little", 14, [0, 0, 0, 0, 24], 1.0, STORAGE),
-    ("storage-41-big-4", 14, [0, 0, 0, 0, 24], 1.0, STORAGE),
-    ("storage-41-big-8", 14, [0, 0, 0, 0, 24], 1.0, STORAGE),
-    ("storage-41-little-4", 14, [0, 0, 0, 0, 24], 1.0, STORAGE),
+    ("all-22-ascii", 23, [12, 20, 44, 48], 2.0, SAVED_WITHOUT_GROUPS),
+    ("all-41-binary", 23, [12, 20, 44, 48], 2.0, BOXES),
+    ("boxes-22-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("boxes-22-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("boxes-41-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("boxes-41-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("data-22-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("data-41-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("ghosts-22-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("ghosts-41-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("layers-41-binary", 42, [24, 44, 72, 60], 3.0, &[(3, 1, "simplices", 24, 14)]),
+    ("meshio-22-ascii", 14, [1, 1, 8, 24], 1.0, BY_MESHIO),
+    ("meshio-22-binary", 14, [1, 1, 8, 24], 1.0, BY_MESHIO),
+    ("meshio-41-ascii", 14, [1, 1, 8, 24], 1.0, BY_MESHIO_41),
+    ("order3-22-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("parametric-22-ascii", 23, [12, 20, 44, 48], 2.0, SAVED_WITHOUT_GROUPS),
+    ("parametric-22-binary", 23, [12, 20, 44, 48], 2.0, SAVED_WITHOUT_GROUPS),
+    ("parametric-41-ascii", 23, [12, 20, 44, 48], 2.0, BOXES),
+    ("parametric-41-binary", 23, [12, 20, 44, 48], 2.0, BOXES),
+    ("parts-22-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("parts-22-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("parts-41-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("parts-41-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("periodic-41-ascii", 14, [0, 0, 4, 24], 1.0, PERIODIC),
+    ("periodic-41-binary", 14, [0, 0, 4, 24], 1.0, PERIODIC),
+    ("plane-22-ascii", 21, [0, 0, 22, 0], 0.0, PLANE),
+    ("plane-22-binary", 21, [0, 0, 22, 0], 0.0, PLANE),
+    ("plane-41-ascii", 21, [0, 0, 22, 0], 0.0, PLANE),
+    ("plane-41-binary", 21, [0, 0, 22, 0], 0.0, PLANE),
+    ("quadratic-22-ascii", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("quadratic-41-binary", 14, [1, 1, 8, 24], 1.0, BOXES),
+    ("sparse-22-ascii", 5, [0, 0, 0, 2], 0.5, SPARSE),
+    ("sparse-41-ascii", 5, [0, 0, 0, 2], 0.5, SPARSE),
+    ("sparse-41-binary", 5, [0, 0, 0, 2], 0.5, SPARSE),
+    ("storage-22-big", 14, [0, 0, 0, 24], 1.0, STORAGE),
+    ("storage-22-little", 14, [0, 0, 0, 24], 1.0, STORAGE),
+    ("storage-41-big-4", 14, [0, 0, 0, 24], 1.0, STORAGE),
+    ("storage-41-big-8", 14, [0, 0, 0, 24], 1.0, STORAGE),
+    ("storage-41-little-4", 14, [0, 0, 0, 24], 1.0, STORAGE),
 ];
 
 #[test]
 fn every_file_has_the_elements_and_groups_that_gmsh_finds() {
     for &(name, nodes, counts, volume, groups) in FILES {
         let mesh = read(name);
-        let lengths =
-            [mesh.points.len(), mesh.lines.len(), mesh.triangles.len(), mesh.quads.len(), mesh.tetrahedra.len()];
+        let lengths = [mesh.points.len(), mesh.lines.len(), mesh.triangles.len(), mesh.tetrahedra.len()];
         assert_eq!((mesh.nodes.len(), lengths), (nodes, counts), "{name}");
         let total: f64 =
             mesh.tetrahedra.iter().map(|e| quality::signed_volume(e.map(|n| mesh.nodes[n as usize]))).sum();

@@ -15,8 +15,6 @@ pub enum CellKind {
     Line,
     /// T3.
     Triangle,
-    /// Four corners in a surface.
-    Quadrilateral,
     /// T4.
     Tetrahedron,
 }
@@ -28,7 +26,7 @@ impl CellKind {
             Self::Vertex => 1,
             Self::Line => 2,
             Self::Triangle => 3,
-            Self::Quadrilateral | Self::Tetrahedron => 4,
+            Self::Tetrahedron => 4,
         }
     }
 
@@ -37,7 +35,6 @@ impl CellKind {
             Self::Vertex => 1,
             Self::Line => 3,
             Self::Triangle => 5,
-            Self::Quadrilateral => 9,
             Self::Tetrahedron => 10,
         }
     }

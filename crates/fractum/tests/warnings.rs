@@ -405,25 +405,28 @@ fn mistakes_are_told_with_their_code() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
-/// A plate, one of whose cells is a quadrilateral.
-fn quads(mut mesh: Mesh) -> Mesh {
-    let body = mesh.groups.iter().position(|group| group.name == "body").unwrap();
+/// The file of a plate, two of whose triangles are one quadrilateral.
+fn with_quadrilateral(mesh: &Mesh) -> Vec<u8> {
+    let nodes = |list: &[u32]| list.iter().map(|node| format!(" {}", node + 1)).collect::<String>();
     let [first, second] = [mesh.triangles[0], mesh.triangles[1]];
     let corner = *second.iter().find(|node| !first.contains(node)).unwrap();
-    // The two triangles of a cell as one quadrilateral.
     let common: Vec<u32> = first.into_iter().filter(|node| second.contains(node)).collect();
     let single = *first.iter().find(|node| !common.contains(node)).unwrap();
-    mesh.quads = vec![[single, common[0], corner, common[1]]];
-    mesh.quad_tags = vec![99_999];
-    mesh.groups[body].quads = vec![0];
-    mesh.groups[body].triangles.retain(|&element| element > 1);
-    mesh
+    let quadrilateral = [single, common[0], corner, common[1]];
+    let text = String::from_utf8(mesh_bytes(mesh, MshFormat::V2_2Ascii)).unwrap();
+    let lines = text.lines().filter(|line| !line.ends_with(&nodes(&second))).map(|line| {
+        let number = line.split(' ').next().unwrap_or_default();
+        let tags = line.strip_suffix(&nodes(&first)).and_then(|line| line.strip_prefix(&format!("{number} 2")));
+        tags.map_or(line.to_owned(), |tags| format!("{number} 3{tags}{}", nodes(&quadrilateral)))
+    });
+    let count = |kind: usize| format!("$Elements\n{}\n", kind);
+    let all = mesh.element_count();
+    lines.map(|line| line + "\n").collect::<String>().replace(&count(all), &count(all - 1)).into_bytes()
 }
 
 #[test]
 fn quadrilaterals_of_a_plane_body_become_triangles() {
-    let mesh = quads(plate());
-    let place = Workplace::with_mesh(&BAR.replace("PLANE", "xy"), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let place = Workplace::with_mesh(&BAR.replace("PLANE", "xy"), &with_quadrilateral(&plate()));
     let ended = place.fractum(&["check", "case.toml"]);
     let told = ended.stdout.contains("1 quadrilateral split into 2 triangles");
     assert!(ended.code == Some(0) && told, "{} {}", ended.stdout, ended.stderr);

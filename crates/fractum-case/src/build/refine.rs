@@ -17,7 +17,7 @@ pub fn refine_bytes(zones: &[RefineZone], mesh: &Mesh) -> u64 {
 /// - returns what is doubtful
 ///
 /// # Errors
-/// Zones without elements, too many elements, and quadrilaterals that would be cut.
+/// Zones without elements, and too many elements.
 pub fn refine_mesh(zones: &[RefineZone], mesh: &mut Mesh) -> Result<Vec<Diagnostic>, Diagnostics> {
     let Some(smallest) = zones.iter().min_by(|a, b| a.size.total_cmp(&b.size)) else { return Ok(Vec::new()) };
     let mut warnings = Vec::new();
@@ -71,7 +71,6 @@ fn finest(zones: &[RefineZone], at: Vec3) -> Option<&RefineZone> {
 pub fn remedy(error: &RefineError) -> &'static str {
     match error {
         RefineError::TooMany(_) => "a larger size, with its unit, or a smaller zone",
-        RefineError::Quadrilateral(_) => "a zone beside the quadrilaterals, or triangles in their place",
         RefineError::Size(_) => "a size above 0",
         RefineError::Nowhere | RefineError::Empty | RefineError::NotWhole => {
             "compare with what fractum mesh info tells, and mesh.unit"

@@ -66,7 +66,7 @@ struct Family<'a> {
 }
 
 /// The elements of each shape.
-fn families(mesh: &Mesh) -> io::Result<[Family<'_>; 5]> {
+fn families(mesh: &Mesh) -> io::Result<[Family<'_>; 4]> {
     let members = |select: fn(&Group) -> &Vec<u32>| mesh.groups.iter().map(move |group| select(group).as_slice());
     let node_count = mesh.nodes.len();
     Ok([
@@ -81,7 +81,6 @@ fn families(mesh: &Mesh) -> io::Result<[Family<'_>; 5]> {
             node_count,
             members(|group| &group.triangles),
         )?,
-        family(3, 2, mesh.quads.as_flattened(), 4, &mesh.quad_tags, node_count, members(|group| &group.quads))?,
         family(
             4,
             3,
@@ -130,8 +129,8 @@ fn check_groups(mesh: &Mesh) -> io::Result<()> {
             let message = format!("groups \"{other}\" and \"{}\" have the same tag {}", group.name, group.tag);
             return Err(invalid(message));
         }
-        let lists = [(0, &group.points), (1, &group.lines), (2, &group.triangles), (2, &group.quads)];
-        for (dimension, members) in lists.into_iter().chain([(3, &group.tetrahedra)]) {
+        let lists = [(0, &group.points), (1, &group.lines), (2, &group.triangles), (3, &group.tetrahedra)];
+        for (dimension, members) in lists {
             if dimension != group.dimension && !members.is_empty() {
                 let message = format!(
                     "group \"{}\" of dimension {} has elements of dimension {dimension}",
@@ -167,7 +166,7 @@ fn write_names(sink: &mut Sink<impl Write>, mesh: &Mesh) -> io::Result<()> {
     sink.text("$EndPhysicalNames\n")
 }
 
-fn write_v2(sink: &mut Sink<impl Write>, mesh: &Mesh, families: &[Family; 5]) -> io::Result<()> {
+fn write_v2(sink: &mut Sink<impl Write>, mesh: &Mesh, families: &[Family; 4]) -> io::Result<()> {
     sink.text(&format!("$Nodes\n{}\n", mesh.nodes.len()))?;
     for (position, &tag) in mesh.nodes.iter().zip(&mesh.node_tags) {
         sink.int(tag_32(tag)?)?;
@@ -215,7 +214,7 @@ fn write_v2(sink: &mut Sink<impl Write>, mesh: &Mesh, families: &[Family; 5]) ->
     sink.text("$EndElements\n")
 }
 
-fn write_v4(sink: &mut Sink<impl Write>, mesh: &Mesh, families: &[Family; 5]) -> io::Result<()> {
+fn write_v4(sink: &mut Sink<impl Write>, mesh: &Mesh, families: &[Family; 4]) -> io::Result<()> {
     // one entity per dimension and set of groups, numbered as they first occur
     let mut entities: [BTreeMap<&[u32], i32>; 4] = Default::default();
     let mut blocks: Vec<(usize, i32, usize, usize)> = Vec::new(); // family, entity, first element, count

@@ -168,8 +168,7 @@ fn add_groups(mesh: &mut Mesh, groups: Vec<Group>) {
 fn drop_unused(mesh: &mut Mesh) {
     let mut used = vec![false; mesh.nodes.len()];
     let elements = [mesh.points.as_flattened(), mesh.lines.as_flattened(), mesh.triangles.as_flattened()];
-    let more = [mesh.quads.as_flattened(), mesh.tetrahedra.as_flattened()];
-    elements.into_iter().chain(more).flatten().for_each(|&node| used[node as usize] = true);
+    elements.into_iter().flatten().chain(mesh.tetrahedra.as_flattened()).for_each(|&node| used[node as usize] = true);
     let mut new = vec![0u32; used.len()];
     (0..used.len()).filter(|&node| used[node]).zip(0..).for_each(|(node, number)| new[node] = number);
     let mut keep = used.iter();
@@ -178,6 +177,5 @@ fn drop_unused(mesh: &mut Mesh) {
     mesh.points.as_flattened_mut().iter_mut().for_each(rename);
     mesh.lines.as_flattened_mut().iter_mut().for_each(rename);
     mesh.triangles.as_flattened_mut().iter_mut().for_each(rename);
-    mesh.quads.as_flattened_mut().iter_mut().for_each(rename);
     mesh.tetrahedra.as_flattened_mut().iter_mut().for_each(rename);
 }

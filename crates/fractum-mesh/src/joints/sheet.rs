@@ -80,7 +80,6 @@ impl Sheet {
         }
         let mut held = vec![false; at.len()];
         mesh.points.iter().for_each(|point| held[point[0] as usize] = true);
-        mesh.quads.iter().flatten().for_each(|&node| held[node as usize] = true);
         let (mut sum, mut count) = (vec![0.0; at.len()], vec![0usize; at.len()]);
         for &([a, b], _) in &sides {
             let length = distance(at[a as usize], at[b as usize]);

@@ -87,7 +87,6 @@ impl Block {
         }
         let mut held = vec![false; mesh.nodes.len()];
         mesh.points.iter().for_each(|point| held[point[0] as usize] = true);
-        mesh.quads.iter().flatten().for_each(|&node| held[node as usize] = true);
         mesh.lines.iter().flatten().for_each(|&node| held[node as usize] = true);
         let allowed = elements.iter().map(|own| allowed(own, mesh.tetrahedra.len())).collect();
         let mut of_node = vec![Vec::new(); mesh.nodes.len()];

@@ -28,8 +28,6 @@ pub(super) struct Bisection<'a> {
     pub(super) triangles: Simplices<3>,
     pub(super) tetrahedra: Simplices<4>,
     is_plane: bool,
-    /// Sides of quadrilaterals, ascending.
-    quad_sides: Vec<[u32; 2]>,
     size: &'a (dyn Fn(Vec3) -> f64 + Sync),
     /// Edges that may be too long.
     todo: Vec<[u32; 2]>,
@@ -59,10 +57,6 @@ impl<'a> Bisection<'a> {
         most: usize,
     ) -> Result<Self, RefineError> {
         let is_plane = mesh.tetrahedra.is_empty();
-        let side = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
-        let of_quad = |&[a, b, c, d]: &[u32; 4]| [[a, b], [b, c], [c, d], [d, a]].map(side);
-        let mut quad_sides: Vec<[u32; 2]> = mesh.quads.iter().flat_map(of_quad).collect();
-        quad_sides.sort_unstable();
         let mut bisection = Bisection {
             nodes: mesh.nodes.clone(),
             lines: Simplices::new(mesh.lines.clone(), &places),
@@ -70,7 +64,6 @@ impl<'a> Bisection<'a> {
             tetrahedra: Simplices::new(mesh.tetrahedra.clone(), &places),
             places,
             is_plane,
-            quad_sides,
             size,
             todo: Vec::new(),
             most,
@@ -117,7 +110,7 @@ impl<'a> Bisection<'a> {
     /// Cuts edges until none is too long.
     ///
     /// # Errors
-    /// Too many elements, and quadrilaterals in the way.
+    /// Too many elements.
     pub(super) fn run(&mut self) -> Result<(), RefineError> {
         let (mut way, mut found) = (Vec::new(), Found::default());
         while let Some(edge) = self.todo.pop() {
@@ -222,10 +215,6 @@ impl<'a> Bisection<'a> {
             lines.add_place();
             triangles.add_place();
             tetrahedra.add_place();
-        }
-        if let Some(pair) = pairs.iter().find(|pair| self.quad_sides.binary_search(pair).is_ok()) {
-            let [a, b] = pair.map(|node| self.nodes[node as usize]);
-            return Err(RefineError::Quadrilateral(0.5 * (a + b)));
         }
         let count = if self.is_plane { self.triangles.nodes.len() } else { self.tetrahedra.nodes.len() };
         if count > self.most {

@@ -74,9 +74,6 @@ pub enum RefineError {
     /// More elements than allowed.
     #[error("more than {0} elements would come of it")]
     TooMany(usize),
-    /// A quadrilateral at this place has an edge that must be cut.
-    #[error("a quadrilateral at ({}, {}, {}) lies where elements are cut, and only triangles and tetrahedra are", .0.x, .0.y, .0.z)]
-    Quadrilateral(Vec3),
 }
 
 /// The mesh with elements cut in two until no edge is longer than the size that is asked for along it, or in the middle of an element that
@@ -220,7 +217,6 @@ fn assembled(mesh: &Mesh, bisection: Bisection<'_>) -> Mesh {
         points: mesh.points.clone(),
         lines,
         triangles,
-        quads: mesh.quads.clone(),
         tetrahedra,
         groups: mesh.groups.iter().map(group).collect(),
         notices: mesh.notices.clone(),

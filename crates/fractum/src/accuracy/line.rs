@@ -34,7 +34,7 @@ impl Passes<'_> {
         let last = self.done.len() - 1;
         let (pass, summary, _) = &self.done[last];
         let Some(peak) = summary.probes.get(&self.load.0).map(|probe| probe.time_of_max) else { return Ok(()) };
-        let is_known = self.case.line_law().is_some() && base.is_plane() && base.quads.is_empty();
+        let is_known = self.case.line_law().is_some() && base.is_plane();
         if !is_known || last == 0 || !pass.left_out.is_empty() || peak <= 0.0 {
             return Ok(());
         }

@@ -76,12 +76,11 @@ impl Solids {
 }
 
 /// Kinds of elements with their numbers.
-fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 5] {
+fn element_counts(mesh: &Mesh) -> [(&'static str, usize); 4] {
     [
         ("points", mesh.points.len()),
         ("lines", mesh.lines.len()),
         ("triangles", mesh.triangles.len()),
-        ("quadrilaterals", mesh.quads.len()),
         ("tetrahedra", mesh.tetrahedra.len()),
     ]
 }

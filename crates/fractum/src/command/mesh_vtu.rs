@@ -18,18 +18,17 @@ pub(super) fn bytes(mesh: &Mesh) -> Result<Vec<u8>, Failure> {
         (CellKind::Vertex, mesh.points.as_flattened()),
         (CellKind::Line, mesh.lines.as_flattened()),
         (CellKind::Triangle, mesh.triangles.as_flattened()),
-        (CellKind::Quadrilateral, mesh.quads.as_flattened()),
         (CellKind::Tetrahedron, mesh.tetrahedra.as_flattened()),
     ];
     let cells = blocks.map(|(kind, nodes)| CellBlock { kind, nodes });
-    let mut first = [0; 6];
+    let mut first = [0; 5];
     for (index, CellBlock { kind, nodes }) in cells.iter().enumerate() {
         first[index + 1] = first[index] + nodes.len() / kind.nodes();
     }
-    let mut physical = vec![0i32; first[5]];
+    let mut physical = vec![0i32; first[4]];
     let mut flags: Vec<Vec<u8>> = Vec::new();
     for (index, group) in mesh.groups.iter().enumerate() {
-        let mut flag = vec![0u8; if index < MOST_ARRAYS { first[5] } else { 0 }];
+        let mut flag = vec![0u8; if index < MOST_ARRAYS { first[4] } else { 0 }];
         for cell in cells_of(group, &first) {
             if physical[cell] == 0 {
                 physical[cell] = group.tag;
@@ -48,8 +47,8 @@ pub(super) fn bytes(mesh: &Mesh) -> Result<Vec<u8>, Failure> {
 }
 
 /// Numbers of the cells of a group.
-fn cells_of(group: &Group, first: &[usize; 6]) -> Vec<usize> {
-    let members = [&group.points, &group.lines, &group.triangles, &group.quads, &group.tetrahedra];
+fn cells_of(group: &Group, first: &[usize; 5]) -> Vec<usize> {
+    let members = [&group.points, &group.lines, &group.triangles, &group.tetrahedra];
     let of_kind = |(members, first): (&Vec<u32>, &usize)| {
         members.iter().map(|&member| first + member as usize).collect::<Vec<_>>()
     };
