@@ -17,6 +17,7 @@ mod heat;
 mod interfaces;
 mod interrupt;
 mod loose;
+mod material;
 mod meant;
 mod mesh;
 mod modes;

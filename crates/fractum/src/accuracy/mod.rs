@@ -48,6 +48,9 @@ const MOST: usize = 300_000;
 const GROWTH: usize = 6;
 const LITTLE: usize = 10_000;
 
+/// How much larger elements become where those wanted are too many: in space a step of two would leave an eighth of them.
+const COARSER: [f64; 2] = [2.0, 1.26];
+
 /// Passes with damage, with that on the mesh of the user, before the first bar is believed; or passes along lines.
 const LEAST: usize = 6;
 const LEAST_LINES: usize = 2;
@@ -324,7 +327,7 @@ impl Passes<'_> {
             match refined(base, &wanted, RefineOptions { seed: &seed, most }) {
                 Ok(made) => break made.mesh,
                 // Another mesh of a size before it.
-                Err(RefineError::TooMany(_)) => size *= 2.0,
+                Err(RefineError::TooMany(_)) => size *= COARSER[usize::from(!base.is_plane())],
                 Err(error) => {
                     let note = Diagnostic::error(&asked.share.place, format!(": {error}"));
                     let note = note.remedy("set solver.accuracy to 0, and refine the mesh yourself (mesh.refine)");

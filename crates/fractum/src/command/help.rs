@@ -42,6 +42,14 @@ Examples:
   fractum new                   list the templates
   fractum new beam tests/beam   write one into a folder";
 
+/// Of `fractum material`.
+pub(super) const MATERIAL: &str = "\
+Examples:
+  fractum material                                          list them
+  fractum material concrete --compressive-strength \"40 MPa\"
+  fractum material granite --compressive-strength \"180 MPa\" --toughness \"1.4 MPa*m^0.5\"
+  fractum material own --young-modulus \"62 GPa\" --poisson-ratio 0.2 --fracture-energy \"8 J/m^2\" --length \"0.5 mm\"";
+
 /// Of `fractum movie`.
 pub(super) const MOVIE: &str = "\
 Examples:

@@ -7,6 +7,7 @@ mod lab_break;
 #[cfg(feature = "report")]
 mod lab_pictures;
 mod manual;
+mod material;
 mod mesh;
 mod mesh_file;
 mod mesh_info;
@@ -130,6 +131,9 @@ enum Command {
     },
     /// Find the bonds that give a material its elastic constants.
     Calibrate(Box<calibrate::CalibrateArguments>),
+    /// Propose the numbers of a material, with their ranges and sources, and what they ask of a mesh.
+    #[command(after_help = help::MATERIAL)]
+    Material(Box<material::MaterialArguments>),
     /// Print the JSON schema of the case file.
     Schema,
     /// Explain a key of the case file, such as bodies.formulation.
@@ -215,6 +219,7 @@ pub(crate) fn execute(arguments: Arguments) -> ExitCode {
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Lab { command } => lab::run(&command),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Material(arguments) => material::run(&arguments),
         Command::Schema => {
             say!("{}", serde_json::to_string_pretty(&fractum_case::schema()).unwrap_or_default());
             Ok(ExitCode::Done)
