@@ -9,7 +9,7 @@ three points. One half or quarter is meshed with bilinear squares, graded toward
 opens, then falls with the opening, exponentially or linearly. The opening at the root is prescribed, so that the load may fall.
 
 Its own checks print the distance from: the strength of a plate without a slit; linear elastic fracture mechanics, for notches of hundreds of process zones
-(Feddersen 1966, Srawley 1976, Tada et al. 1973); the load of a fully plastic ligament, for a beam far smaller than a process zone; the modulus of rupture of
+(Feddersen 1966, Srawley 1976, Tada et al. 1973, also those of revolution); the load of a fully plastic ligament, for a beam far smaller than a process zone; the modulus of rupture of
 beams without a notch by Planas, Guinea & Elices (1995), with the stress under a point load by Timoshenko & Goodier (1951).
 """
 
@@ -36,8 +36,12 @@ class Material:
         """Length of the process zone [m]."""
         return self.young * self.energy / self.strength**2
 
-    def matrix(self):
+    def matrix(self, round=False):
+        """Stress along, across, in shear, and around if the body is one of revolution, from strain."""
         e, nu = self.young, self.poisson
+        if round:
+            volume = e * nu / ((1 + nu) * (1 - 2 * nu))
+            return np.array([[1, 1, 0, 1], [1, 1, 0, 1], [0, 0, 0, 0], [1, 1, 0, 1]]) * volume + np.diag([1, 1, 0.5, 1]) * e / (1 + nu)
         if self.plane == "strain":
             e, nu = e / (1 - nu**2), nu / (1 - nu)
         return e / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
@@ -72,6 +76,7 @@ class Piece:
 
     The notch ends at `a`; squares at its root have the size `h` [m]. `kind` is "centre" (a quarter: the middle of the slit at x = 0), "edge" (a half),
     "double" (a quarter: the middle of the ligament at x = `width`) or "beam" (a half: y runs along the beam, a support at x = 0 and y = `height`).
+    Bodies of revolution are "penny" (a disc-shaped crack, its axis at x = 0) and "ring" (a notch around a rod, its axis at x = `width`).
     """
 
     def __init__(self, kind, a, width, height, h, material=None, thickness=0.1, far=None):
@@ -84,7 +89,10 @@ class Piece:
         y = graded([[0.0, 12 * h, h, h], [12 * h, height, h, far]] + ([[height, height + width / 4, far, far]] if beam else []))
         nx, ny = len(x), len(y)
         node = np.arange(nx * ny).reshape(nx, ny)
-        plane = self.material.matrix()
+        axis = {"penny": 0.0, "ring": width}.get(kind)
+        elastic = self.material.matrix(axis is not None)
+        radius = lambda at: at if axis is None else abs(at - axis)
+        weight = lambda at: thickness + 0 * at if axis is None else 2 * np.pi * radius(at)
         corners = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], -1).reshape(-1, 4)
         dx = np.repeat(np.diff(x), ny - 1)
         dy = np.tile(np.diff(y), nx - 1)
@@ -94,10 +102,15 @@ class Piece:
                 s_, t_ = s / 3**0.5, t / 3**0.5
                 along = np.array([-(1 - t_), 1 - t_, 1 + t_, -(1 + t_)]) / 4
                 across = np.array([-(1 - s_), -(1 + s_), 1 + s_, 1 - s_]) / 4
-                b = np.zeros((len(corners), 3, 8))
+                b = np.zeros((len(corners), len(elastic), 8))
                 b[:, 0, 0::2] = b[:, 2, 1::2] = along * (2 / dx)[:, None]
                 b[:, 1, 1::2] = b[:, 2, 0::2] = across * (2 / dy)[:, None]
-                stiffness += np.einsum("eki,kl,elj,e->eij", b, plane, b, dx * dy / 4 * thickness)
+                at = np.repeat(x[:-1], ny - 1) + (1 + s_) * dx / 2
+                if axis is not None:
+                    # Motion is along x, away from the axis of a penny and towards that of a ring.
+                    values = np.array([(1 - s_) * (1 - t_), (1 + s_) * (1 - t_), (1 + s_) * (1 + t_), (1 - s_) * (1 + t_)]) / 4
+                    b[:, 3, 0::2] = values / (at - axis)[:, None]
+                stiffness += np.einsum("eki,kl,elj,e->eij", b, elastic, b, dx * dy / 4 * weight(at))
         unknown = np.stack([2 * corners, 2 * corners + 1], -1).reshape(-1, 8)
         rows, columns = np.repeat(unknown, 8, 1).ravel(), np.tile(unknown, 8).ravel()
         whole = coo_matrix((stiffness.ravel(), (rows, columns))).tocsc()
@@ -109,7 +122,7 @@ class Piece:
             fixed = np.array([2 * node[-1, 0]])
         else:
             moved = 2 * node[:, -1] + 1
-            fixed = 2 * {"centre": node[0, :], "double": node[-1, :], "edge": node[-1:, -1]}[kind]
+            fixed = 2 * {"centre": node[0, :], "penny": node[0, :], "double": node[-1, :], "ring": node[-1, :], "edge": node[-1:, -1]}[kind]
         given = np.concatenate([line, moved])
         free = np.setdiff1d(np.arange(2 * nx * ny), np.concatenate([given, fixed]))
         inner = splu(whole[free][:, free])
@@ -119,12 +132,13 @@ class Piece:
         coupling = whole[free][:, given] @ shape
         self.stiffness = shape.T @ (whole[given][:, given] @ shape) - coupling.T @ inner.solve(coupling)
         position = x[ahead]
-        share = np.zeros(len(position))
-        share[:-1] += 0.5 * np.diff(position)
-        share[1:] += 0.5 * np.diff(position)
-        self.area = share * thickness
+        # What a shape function of the line weighs: its own end of an interval counts twice.
+        begin, end = weight(position[:-1]), weight(position[1:])
+        self.area = np.zeros(len(position))
+        self.area[:-1] += np.diff(position) * (2 * begin + end) / 6
+        self.area[1:] += np.diff(position) * (begin + 2 * end) / 6
         # Reactions on one piece to the load on the whole body.
-        self.pieces = 1 if kind == "edge" else 2
+        self.pieces = 2 if kind in ("centre", "double", "beam") else 1
 
     def largest_load(self):
         """Load on the whole body [N]; for a beam that of the middle."""
@@ -186,6 +200,17 @@ def checks():
     shape = 3 * s**0.5 * (1.99 - s * (1 - s) * (2.15 - 3.93 * s + 2.7 * s**2)) / (2 * (1 + 2 * s) * (1 - s) ** 1.5)
     beam = Piece("beam", s * depth, depth, 2 * depth, 0.05 * zone, far=depth / 50).largest_load()
     print(f"notched beam of 1000 process zones {beam / (toughness * 0.1 * depth**0.5 / (4 * shape)) - 1:+.2%} of elastic fracture")
+    # With linear softening, since a load that falls with the length of the crack has its peak before a long tail of softening is there.
+    short, radius = Material(softening="linear"), 300 * zone
+    stiffer = 1 / (1 - material.poisson**2) ** 0.5
+    s = 2 / 3
+    shape = 2 / np.pi * (1 - 0.5 * s + 0.148 * s**3) / (1 - s) ** 0.5
+    penny = Piece("penny", s * radius, radius, 3 * radius, 0.05 * zone, short).largest_load() / (np.pi * radius**2)
+    print(f"penny of 200 process zones {penny / (stiffer * toughness / (shape * (np.pi * s * radius) ** 0.5)) - 1:+.2%} of elastic fracture")
+    s = 1 / 3
+    shape = 0.5 * (1 - s) ** 0.5 * (1 + s / 2 + 3 / 8 * s**2 - 0.363 * s**3 + 0.731 * s**4)
+    ring = Piece("ring", (1 - s) * radius, radius, 3 * radius, 0.05 * zone, short).largest_load() / (np.pi * (s * radius) ** 2)
+    print(f"rod with a notch of 200 process zones around it {ring / (stiffer * toughness / (shape * (np.pi * s * radius) ** 0.5)) - 1:+.2%} of elastic fracture")
     depth = 1e-5 * zone
     beam = Piece("beam", s * depth, depth, 2 * depth, 0.005 * depth, far=depth / 200).largest_load()
     print(f"notched beam of 0.00001 process zones {beam / (strength * 0.1 * (0.75 * depth) ** 2 / (2 * depth)) - 1:+.2%} of a plastic ligament")
