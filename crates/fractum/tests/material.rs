@@ -33,7 +33,7 @@ fn toughness_energy_and_lengths_become_each_other() {
     let with = |more: &[&str], label: &str| value(&place, &[&own, more].concat(), label);
     let glass = ["--toughness", "0.75e6 Pa*m^0.5", "--tensile-strength", "30 MPa"];
     assert_eq!(with(&glass, "fracture energy Gf"), "8.71 J/m^2");
-    assert_eq!(with(&glass, "process zone E Gf/ft²"), "600 um");
+    assert_eq!(with(&glass, "process zone E Gf/ft²"), "600 µm");
     let field = ["--fracture-energy", "8 J/m^2", "--length", "0.5 mm"];
     assert_eq!(with(&field, "tensile strength ft"), "10.2 MPa");
     assert_eq!(with(&[&field[..], &["--model", "at1"]].concat(), "tensile strength ft"), "19.3 MPa");
@@ -83,7 +83,7 @@ fn wrong_materials_are_told() {
     wrong(&["concrete", "--compressive-strength", "200 MPa"], "from 12 to 120 MPa");
     wrong(&["concrete", "--compressive-strength", "30 mm"], "--compressive-strength: ");
     wrong(&["granite", "--compressive-strength", "5 MPa"], "rocks of this kind have 100 MPa to 250 MPa");
-    wrong(&["granite", "--young-modulus", "-3 GPa"], "must be above 0");
+    wrong(&["granite", "--young-modulus", "0 GPa"], "must be above 0");
     wrong(&["granite", "--poisson-ratio", "0.5"], "must be below 0.5");
     wrong(&["own", "--young-modulus", "3 GPa"], "needs --young-modulus and --poisson-ratio");
     wrong(&["own", "--young-modulus", "3 GPa", "--poisson-ratio", "0.2"], "needs --toughness or --fracture-energy");

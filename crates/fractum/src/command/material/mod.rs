@@ -318,12 +318,12 @@ impl Proposal {
             ("fracture toughness K_Ic", &self.toughness, "Pa m^0.5"),
             ("fracture energy Gf", &self.energy, "J/m^2"),
         ];
-        say!("{:<24} {:<16} {:<26} source", "", "value", "range");
+        say!("{:<24} {:<16} {:<34} source", "", "value", "range");
         for (what, row, unit) in rows {
             let Some(row) = row else { continue };
             let range =
                 row.range.map_or(String::new(), |[low, high]| format!("{} to {}", told(low, unit), told(high, unit)));
-            say!("{what:<24} {:<16} {range:<26} {}", told(row.value, unit), row.source);
+            say!("{what:<24} {:<16} {range:<34} {}", told(row.value, unit), row.source);
         }
         let (Some(young), Some(poisson), Some(tension), Some(energy)) =
             (&self.young, &self.poisson, &self.tension, &self.energy)
