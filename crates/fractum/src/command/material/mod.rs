@@ -5,6 +5,7 @@ mod known;
 use clap::{Args, ValueEnum};
 use fractum::{ExitCode, Failure, say};
 use fractum_case::{Dimension, nearest, parse_quantity};
+use fractum_math::elementary::{ln, pow};
 use fractum_output::number::{percent, quantity};
 
 use self::known::{KNOWN, Kind, Measured, Rock, Specimen};
@@ -144,9 +145,9 @@ fn concrete(strength: Option<f64>) -> Result<Proposal, Failure> {
     }
     let mean = characteristic + 8.0;
     let tension =
-        if characteristic <= 50.0 { 0.3 * characteristic.powf(2.0 / 3.0) } else { 2.12 * (1.0 + 0.1 * mean).ln() };
-    let young = 21.5e9 * (0.1 * mean).cbrt();
-    let energy = 73.0 * mean.powf(0.18);
+        if characteristic <= 50.0 { 0.3 * pow(characteristic, 2.0 / 3.0) } else { 2.12 * ln(1.0 + 0.1 * mean) };
+    let young = 21.5e9 * pow(0.1 * mean, 1.0 / 3.0);
+    let energy = 73.0 * pow(mean, 0.18);
     Ok(Proposal {
         density: Some(Row::of(2400.0, "usual")),
         young: Some(Row::between(
