@@ -128,11 +128,6 @@ pub(super) const KNOWN: &[Known] = &[
         kind: rock([150.0, 300.0], [10.0, 30.0], [300.0, 450.0], METAMORPHIC, [0.10, 0.33], 2650.0),
     },
     Known {
-        name: "marble",
-        what: "metamorphic limestone",
-        kind: rock([100.0, 250.0], [7.0, 20.0], [700.0, 1000.0], METAMORPHIC, [0.15, 0.30], 2700.0),
-    },
-    Known {
         name: "sandstone",
         what: "sedimentary rock of sand",
         kind: rock([20.0, 170.0], [4.0, 25.0], [200.0, 350.0], SEDIMENTARY, [0.05, 0.40], 2350.0),
