@@ -39,7 +39,7 @@ pub(super) enum Kind {
     /// Concrete by the characteristic compressive strength of cylinders.
     Concrete,
     Rock(Rock),
-    Specimen(Specimen),
+    Specimen(&'static Specimen),
 }
 
 pub(super) struct Known {
@@ -98,7 +98,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known {
         name: "lac-du-bonnet",
         what: "granite of the Underground Research Laboratory in Manitoba",
-        kind: Kind::Specimen(Specimen {
+        kind: Kind::Specimen(&Specimen {
             density: exactly(2630.0, LAC_DU_BONNET),
             young: around(69e9, 5.8e9, LAC_DU_BONNET),
             poisson: around(0.26, 0.04, LAC_DU_BONNET),
@@ -145,7 +145,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known {
         name: "alumina",
         what: "sintered ceramic, 99.5 % Al2O3, grains of 5 um",
-        kind: Kind::Specimen(Specimen {
+        kind: Kind::Specimen(&Specimen {
             density: around(3984.0, 2.0, ALUMINA),
             young: around(416e9, 30e9, ALUMINA),
             poisson: exactly(0.231, ALUMINA),
@@ -158,7 +158,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known {
         name: "silicon-carbide",
         what: "sintered ceramic, grains of 6 um",
-        kind: Kind::Specimen(Specimen {
+        kind: Kind::Specimen(&Specimen {
             density: exactly(3160.0, CARBIDE),
             young: exactly(415e9, CARBIDE),
             poisson: exactly(0.16, CARBIDE),
@@ -171,7 +171,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known {
         name: "soda-lime-glass",
         what: "float glass, annealed",
-        kind: Kind::Specimen(Specimen {
+        kind: Kind::Specimen(&Specimen {
             density: exactly(2500.0, "EN 572-1"),
             young: exactly(70e9, "EN 572-1"),
             poisson: exactly(0.2, "EN 572-1"),
@@ -184,7 +184,7 @@ pub(super) const KNOWN: &[Known] = &[
     Known {
         name: "borosilicate-glass",
         what: "glass of laboratories, annealed",
-        kind: Kind::Specimen(Specimen {
+        kind: Kind::Specimen(&Specimen {
             density: Measured { value: 2250.0, range: Some([2200.0, 2500.0]), source: "EN 1748-1-1" },
             young: Measured { value: 63e9, range: Some([60e9, 70e9]), source: "EN 1748-1-1" },
             poisson: exactly(0.2, "EN 1748-1-1"),
