@@ -105,6 +105,8 @@ codes! {
     ContactSurface = "contact-surface",
     /// A support on particles that a tie moves.
     SupportOnTie = "support-on-tie",
+    /// A tie to facets that are smaller than particles.
+    TieFacets = "tie-facets",
     /// A packing that does not meet its certificate.
     Packing = "packing",
     /// A strength in compression that bonds cannot have beside their strength in tension.

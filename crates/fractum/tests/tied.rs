@@ -126,3 +126,18 @@ fn what_cannot_be_tied_is_refused_with_a_remedy() {
         assert!(ended.stderr.starts_with("case.toml:"), "{}", ended.stderr);
     }
 }
+
+#[test]
+fn facets_smaller_than_particles_are_told() {
+    let told = |case: &str, halvings: &str| {
+        let place = place(case);
+        let set = format!("mesh.halvings={halvings}");
+        let checked = place.fractum(&["check", "case.toml", "--set", &set]);
+        assert_eq!(checked.code, Some(0), "{}", checked.stderr);
+        checked.stdout.contains("[tie-facets]")
+    };
+    // Edges of 0.45 mm against particles of 0.22 mm.
+    assert!(!told(BAR, "0"));
+    assert!(!told(BAR, "1"));
+    assert!(told(BAR, "2"));
+}

@@ -215,6 +215,7 @@ impl<'a> Context<'a> {
             self.supports_and_loads(&solid, &parts, loaded, &bare, &boundary_of_parts)?;
         let statics = statics::statics(self, &solid, &numbering);
         let ties = ties::ties(self, &solid, &bonded, &taken, &parts, &numbering, &boundary_of_parts);
+        warnings.extend(ties.warnings.iter().cloned());
         // Facets under tied particles matter to what breaks off only.
         let breaks = bonded.can_break();
         let touched = |facet: &[u32; 3]| breaks || !ties.covered.contains(&ties::sorted(*facet));

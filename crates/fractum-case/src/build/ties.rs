@@ -5,6 +5,8 @@ use std::collections::HashSet;
 use fractum_fem::{ElementKind, Solid};
 use fractum_math::Vec3;
 use fractum_mesh::topology;
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
 use fractum_prepare::PreparedBody;
 use fractum_scene::Bonded;
 use fractum_scene::coupling::{Attachment, Layer};
@@ -16,6 +18,8 @@ use crate::{Diagnostic, Place, Spanned};
 
 /// Largest gap of a tied particle over the mean radius: a packing touches its walls within a few hundredths.
 const WITHIN: f64 = 0.1;
+/// Mean edge of tied facets over the diameter of particles below which many facets have no particle.
+const SMALL_FACET: f64 = 0.75;
 /// Cosine between facets that lie in one surface.
 const SAME_SURFACE: f64 = 0.9;
 
@@ -41,6 +45,7 @@ pub(super) struct TiedLayers {
     pub(super) reports: Vec<TieReport>,
     /// Facets under tied particles, which the particles do not touch as well.
     pub(super) covered: HashSet<[u32; 3]>,
+    pub(super) warnings: Vec<Diagnostic>,
 }
 
 /// Elements of a solid that a bonded body has taken.
@@ -177,6 +182,7 @@ fn tie_one(
         return;
     }
     cover(solid, bonded, facets, &layer.attachments, 2.0 * mean_radius, &mut all.covered);
+    all.warnings.extend(small_facets(solid, &layer.attachments, 2.0 * mean_radius, of, &among.value));
     all.reports.push(TieReport {
         bonded: among.value.clone(),
         solid: of.0.to_owned(),
@@ -185,6 +191,30 @@ fn tie_one(
         within,
     });
     all.attachments.extend(layer.attachments);
+}
+
+/// Facets smaller than particles: those without a particle are free, the tie gives way, and waves are reflected.
+fn small_facets(
+    solid: &Solid,
+    tied: &[Attachment],
+    diameter: f64,
+    (name, place): (&str, &Place),
+    bonded: &str,
+) -> Option<Diagnostic> {
+    let edge = |a: &Attachment| {
+        let [a, b, c] = a.facet.map(|n| solid.position(n as usize));
+        ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0
+    };
+    let mean = tied.iter().map(edge).sum::<f64>() / tied.len() as f64;
+    if mean >= SMALL_FACET * diameter {
+        return None;
+    }
+    let (edges, diameter) = (quantity(mean, "m"), quantity(diameter, "m"));
+    let found = format!(
+        "= \"{name}\": its tied facets have edges of {edges}, and particles of \"{bonded}\" are {diameter} across"
+    );
+    let note = Diagnostic::warning(Code::TieFacets, place, found);
+    Some(note.remedy("facets without a particle are not held, so that waves are reflected; take larger elements there, or smaller particles"))
 }
 
 /// Adds the facets that tied particles cover: their own, and small ones that lie between them in the same surface.
