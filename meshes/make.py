@@ -57,6 +57,7 @@ UNSTRUCTURED = {
     "crack-size-plane/rows-20": ("crack-size-plane/plate.geo", {"h": 0.2, "algorithm": 6, "line": 0}, False),
     "crack-size-plane/rows-10": ("crack-size-plane/plate.geo", {"h": 0.1, "algorithm": 6, "line": 0}, False),
     "crack-size-plane/rows-5": ("crack-size-plane/plate.geo", {"h": 0.05, "algorithm": 6, "line": 0}, False),
+    "crack-size/penny": ("crack-size/penny.geo", {"h": 0.4}, True),
     "crack-size-plane/notch-30": ("crack-size-plane/notch.geo", {"h": 0.15, "algorithm": 6, "angle": 30}, False),
     "crack-size-plane/line": ("crack-size-plane/plate.geo", {"h": 0.1, "line": 1}, False),
     "double-notched-plane/coarse": ("double-notched-plane/beam.geo", {"h": 0.0097}, False),

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Largest loads of cohesive cracks on known straight paths, by finite elements of its own (needs numpy and scipy).
 
-    python exact.py                  checks, and the plate of plate.toml
+    python exact.py                  checks, the plate of plate.toml, and the cylinder of penny.toml
     python exact.py scenes.csv      the scenes of a table, each with squares of two sizes
 
 Plates with a slit across their middle, an edge notch or two edge notches are pulled apart by ends that stay straight; beams, notched or not, are bent by
@@ -228,6 +228,9 @@ def plate():
         for h in (0.05, 0.025):
             load = 0.5 * Piece("centre", a * zone, 3 * a * zone, 3 * a * zone, h * zone).largest_load()
             print(f"half slit {a:g} process zones, squares of {h:g}: {load / 1e3:.2f} kN on half a plate", flush=True)
+    for h in (0.05, 0.025):
+        load = 0.25 * Piece("penny", zone, 3 * zone, 3 * zone, h * zone).largest_load()
+        print(f"penny of one process zone, squares of {h:g}: {load / 1e6:.4f} MN on a quarter of the cylinder", flush=True)
 
 
 def table(path):
