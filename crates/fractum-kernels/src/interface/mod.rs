@@ -15,7 +15,7 @@ use crate::elementary::{atan, exp, log10, pow, tan};
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 
-pub use spring::SpringInterface;
+pub use spring::{Led, SpringInterface, Standing};
 pub use stiff::{FreeJump, stiff_traction};
 
 /// What an interface bears.

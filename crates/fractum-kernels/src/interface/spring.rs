@@ -2,6 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, tangential};
 use crate::contact::slip_to_cone;
+use crate::elementary::ln;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 use crate::{Mat3, Vec3};
@@ -26,6 +27,50 @@ pub struct SpringInterface {
     pub law: InterfaceLaw,
     /// K_n and K_s [Pa/m], > 0.
     pub stiffness: [f64; 2],
+}
+
+/// What a jump asks of the strength: stress that opens and that slides [Pa], and the square of what they are on the ellipse of the strengths.
+struct Asked {
+    opens: f64,
+    slides: f64,
+    square: f64,
+}
+
+/// Where a jump stands on the softening curve of its mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Standing {
+    /// Stress of the whole interface over its strength, on the ellipse; ≥ 0.
+    pub ratio: f64,
+    /// The ratio from which on it softens further; 1 before it has begun to.
+    pub onset: f64,
+    /// Growth of the ratio over which it softens: to zero by a straight line, to 1/e of the strength by exponential decay.
+    pub length: f64,
+}
+
+/// A point whose softening is given: the displacements are those at which it has come to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Led {
+    /// Its jump [m].
+    pub jump: Vec3,
+    /// Its traction there [Pa].
+    pub traction: Vec3,
+    /// Stiffness about that jump [Pa/m]: its secant, and towards further softening that of the whole interface, which holds it there.
+    pub stiffness: Mat3,
+}
+
+/// The ratio r at which exponential softening has come to a secant, exp((1 - r)/length)/r.
+fn decayed_to(secant: f64, length: f64) -> f64 {
+    let mut ratio = 1.0;
+    // From below on a function whose slope falls: Newton's method does not pass the root.
+    for _ in 0..LOOKS {
+        let missing = ln(ratio) + (ratio - 1.0) / length + ln(secant);
+        let change = missing / (1.0 / ratio + 1.0 / length);
+        if change >= -ROUNDING * ratio {
+            break;
+        }
+        ratio -= change;
+    }
+    ratio
 }
 
 /// Onset and end of softening for a jump.
@@ -171,21 +216,82 @@ impl SpringInterface {
     /// - `rubs`: friction that helps against sliding [Pa]
     #[inline]
     fn loading(&self, jump: &Vec3, rubs: f64) -> Option<Loading> {
+        let asked = self.asked(jump, rubs);
+        if asked.square <= 1.0 { None } else { Some(self.on_curve(&asked)) }
+    }
+
+    /// What a jump asks of the strength.
+    #[inline]
+    fn asked(&self, jump: &Vec3, rubs: f64) -> Asked {
         let (law, [normal, across]) = (&self.law, self.stiffness);
         let opens = normal * jump.x.max(0.0);
         let slides = (across * tangential(jump) - rubs).max(0.0);
         let [first, second] = [opens / law.tensile_strength, slides / law.cohesion];
-        let square = first * first + second * second;
-        if square <= 1.0 {
-            return None;
-        }
+        Asked { opens, slides, square: first * first + second * second }
+    }
+
+    /// Onset and end of the mode in which something is asked.
+    #[inline]
+    fn on_curve(&self, asked: &Asked) -> Loading {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        let Asked { opens, slides, square } = *asked;
         let [opening, sliding] = [opens * opens / (normal * square), slides * slides / (across * square)];
         let energy = law.energy(sliding / (opening + sliding)) / (opening + sliding);
         let end = match law.softening {
             InterfaceSoftening::Linear => (2.0 * energy).max(LEAST_RATIO),
             InterfaceSoftening::Exponential => energy.max(0.5 * LEAST_RATIO),
         };
-        Some(Loading { ratio: square.sqrt(), end })
+        Loading { ratio: square.sqrt(), end }
+    }
+
+    /// Where a jump stands on the softening curve of its mode; none where no strength is left, or nothing is asked of it.
+    #[inline]
+    pub fn standing(&self, jump: &Vec3, state: &InterfaceState) -> Option<Standing> {
+        if state.secant == 0.0 || state.residual == 0.0 {
+            return None;
+        }
+        let asked = self.asked(jump, self.rubs(jump, state));
+        if asked.square < f64::MIN_POSITIVE {
+            return None;
+        }
+        let Loading { ratio, end } = self.on_curve(&asked);
+        let (onset, length) = match self.law.softening {
+            InterfaceSoftening::Linear => (end / (1.0 + state.secant * (end - 1.0)), end - 1.0),
+            InterfaceSoftening::Exponential => (decayed_to(state.secant, end - 0.5), end - 0.5),
+        };
+        Some(Standing { ratio, onset, length })
+    }
+
+    /// A point whose jump goes on to a given [ratio](Standing::ratio), in the mode that it has.
+    ///
+    /// - `jump`, `state`: those of the last iterate and of the last equilibrium; something is asked of its strength
+    #[inline]
+    pub fn lead(&self, jump: &Vec3, state: &InterfaceState, ratio: f64) -> Led {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        let rubs = self.rubs(jump, state);
+        let asked = self.asked(jump, rubs);
+        let factor = ratio / asked.square.sqrt();
+        let slip = tangential(jump);
+        let along = if slip > 0.0 { Vec3::new(0.0, jump.y, jump.z) / slip } else { Vec3::zeros() };
+        let slides = if asked.slides > 0.0 { (factor * asked.slides + rubs) / across } else { slip };
+        let led = along * slides + Vec3::x() * if jump.x > 0.0 { factor * jump.x } else { jump.x };
+        let mut after = *state;
+        let force = self.load(led, &mut after);
+        let [first, second] = self.secant(&led, &force, &after);
+        let away = Vec3::x() * (asked.opens * normal / (law.tensile_strength * law.tensile_strength))
+            + along * (asked.slides * across / (law.cohesion * law.cohesion));
+        let away = away.normalize();
+        let secant = Mat3::from_diagonal(&Vec3::new(first, second, second));
+        let held = normal.max(across) - (secant * away).dot(&away);
+        Led { jump: led, traction: force.traction(), stiffness: secant + away * away.transpose() * held.max(0.0) }
+    }
+
+    /// Friction that helps against sliding [Pa].
+    #[inline]
+    fn rubs(&self, jump: &Vec3, state: &InterfaceState) -> f64 {
+        let pressure = self.stiffness[0] * (-jump.x).max(0.0);
+        let worn = tangential(&Vec3::new(0.0, state.slip[0], state.slip[1]));
+        self.law.friction_at(state.residual, pressure, worn) * pressure
     }
 
     /// Least energy over that which the interface stores up to its strength, over all modes: softening snaps back where it is 1 or less.

@@ -172,6 +172,35 @@ pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
     hold((back / secant - 1.0).abs() < 1e-5, || format!("{back} for {secant} Pa/m on the way back"))
 }
 
+/// Led down its curve in one mode, from any state on it, also by a longer or shorter jump than that: it stands where it was led to and softens from there, and its traction is that of the law.
+pub(crate) fn spring_led(draw: &mut Draw) -> Held {
+    let law = InterfaceLaw { dilation: 0.0, ..law(draw) };
+    let interface = with_stiffness(draw, law);
+    let along = direction(draw, law.last());
+    let mut state = law.intact(false);
+    let onset = interface.standing(&along, &state).map_or(f64::NAN, |standing| standing.ratio).recip();
+    for _ in 0..8 {
+        let Some(before) = interface.standing(&(along * onset), &state) else { return Ok(()) };
+        hold((before.ratio - 1.0).abs() < 1e-12, || format!("{before:?} at the strength"))?;
+        let ratio = before.onset + draw.between(0.01, 0.3) * before.onset.max(before.length);
+        let far = draw.over_decades(0.1, 10.0);
+        let led = interface.lead(&(along * (onset * far)), &state, ratio);
+        let error = (led.jump - along * (onset * ratio)).norm() / led.jump.norm();
+        hold(error < 1e-12, || format!("led past by {error}"))?;
+        let force = interface.load(led.jump, &mut state);
+        let error = (force.traction() - led.traction).norm();
+        hold(error <= 1e-9 * law.tensile_strength, || format!("{:?} for {:?}", led.traction, force.traction()))?;
+        let pivots = led.stiffness.symmetric_eigenvalues();
+        hold(pivots.iter().all(|pivot| *pivot >= 0.0), || format!("{pivots:?} of its stiffness"))?;
+        let Some(after) = interface.standing(&led.jump, &state) else { return Ok(()) };
+        let at = ratio / after.onset - 1.0;
+        hold(at.abs() < 1e-9 && (after.ratio / ratio - 1.0).abs() < 1e-9, || {
+            format!("stands at {after:?}, led to {ratio}")
+        })?;
+    }
+    Ok(())
+}
+
 /// A way that opens, closes and slides for- and backwards.
 fn any_way(draw: &mut Draw, scale: [f64; 2], steps: u32) -> Vec<Vec3> {
     let knots: Vec<Vec3> = (0..12)
