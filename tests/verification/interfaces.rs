@@ -15,7 +15,7 @@ use fractum_scene::{
 use fractum_tests::{CONCRETE, settings, statics};
 use nalgebra::Rotation3;
 
-const LAW: InterfaceLaw = InterfaceLaw {
+pub(crate) const LAW: InterfaceLaw = InterfaceLaw {
     tensile_strength: 1e6,
     cohesion: 1.5e6,
     opening_energy: 40.0,
@@ -30,25 +30,25 @@ const LAW: InterfaceLaw = InterfaceLaw {
 };
 
 /// A bar along x, in halves that an interface joins.
-struct Bar {
-    kind: ElementKind,
-    cells: [u32; 2],
+pub(crate) struct Bar {
+    pub(crate) kind: ElementKind,
+    pub(crate) cells: [u32; 2],
     /// Size of cells [m].
-    size: f64,
-    poisson_ratio: f64,
-    formulation: Formulation,
+    pub(crate) size: f64,
+    pub(crate) poisson_ratio: f64,
+    pub(crate) formulation: Formulation,
     /// Turns all of it.
-    turn: Mat3,
-    seed: u64,
+    pub(crate) turn: Mat3,
+    pub(crate) seed: u64,
     /// Law and stiffness; none for a bar in one piece.
-    interface: Option<(InterfaceLaw, Option<[f64; 2]>)>,
+    pub(crate) interface: Option<(InterfaceLaw, Option<[f64; 2]>)>,
     /// Step [s]; absent means that of the elements.
-    step: Option<f64>,
-    kinematics: Kinematics,
+    pub(crate) step: Option<f64>,
+    pub(crate) kinematics: Kinematics,
 }
 
 impl Bar {
-    fn new(kind: ElementKind, interface: Option<(InterfaceLaw, Option<[f64; 2]>)>) -> Self {
+    pub(crate) fn new(kind: ElementKind, interface: Option<(InterfaceLaw, Option<[f64; 2]>)>) -> Self {
         let (cells, size, formulation) = ([8, 2], 0.01, Formulation::Smoothed);
         Bar {
             kind,
@@ -64,16 +64,16 @@ impl Bar {
         }
     }
 
-    fn extent(&self) -> [f64; 2] {
+    pub(crate) fn extent(&self) -> [f64; 2] {
         self.cells.map(|cells| self.size * f64::from(cells))
     }
 
-    fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.extent()[1].powi(2)
     }
 
     /// The mesh before it turns, with groups of both halves.
-    fn mesh(&self) -> Mesh {
+    pub(crate) fn mesh(&self) -> Mesh {
         let ([along, across], [length, width]) = (self.cells, self.extent());
         let jitter = Some(Jitter { fraction: 0.15, seed: self.seed });
         let mut mesh = match self.kind {
@@ -107,7 +107,7 @@ impl Bar {
     }
 
     /// The scene that `supports` makes of the mesh as it turned; with that mesh as it was.
-    fn scene(&self, end: f64, supports: impl FnOnce(&Mesh) -> Vec<Support>) -> (Scene, Mesh) {
+    pub(crate) fn scene(&self, end: f64, supports: impl FnOnce(&Mesh) -> Vec<Support>) -> (Scene, Mesh) {
         let mesh = self.mesh();
         let elements: Vec<[u32; 4]> = match self.kind {
             ElementKind::T3 => mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect(),
@@ -138,12 +138,12 @@ impl Bar {
     }
 
     /// Nodes of the mesh where something holds before it turns.
-    fn at(mesh: &Mesh, keep: impl Fn(&Vec3) -> bool) -> Vec<u32> {
+    pub(crate) fn at(mesh: &Mesh, keep: impl Fn(&Vec3) -> bool) -> Vec<u32> {
         (0..mesh.nodes.len() as u32).filter(|&n| keep(&mesh.nodes[n as usize])).collect()
     }
 
     /// Held at its left end and moved by a velocity at the right one, that grows from zero.
-    fn pulled(&self, velocity: Vec3, end: f64) -> (Scene, Vec<u32>) {
+    pub(crate) fn pulled(&self, velocity: Vec3, end: f64) -> (Scene, Vec<u32>) {
         let length = self.extent()[0];
         let mut right = Vec::new();
         let rise = 0.1 * end;

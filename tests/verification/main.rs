@@ -10,6 +10,7 @@ mod excavation;
 mod fracture_balance;
 mod gas;
 mod inside_pressure;
+mod interface_path;
 mod interfaces;
 mod laws;
 mod leaving;

@@ -387,7 +387,8 @@ impl Plan {
         let control = match &settings.control {
             Control::Time if heats => "by steps of time".to_owned(),
             Control::Time => "by steps of the load parameter".to_owned(),
-            Control::Path => "along the path of equilibrium, by steps of damage".to_owned(),
+            Control::TimeThenPath => "by steps of the load parameter; from the first one on that has no equilibrium along its path, by steps of interfaces that soften".to_owned(),
+            Control::Path => format!("along the path of equilibrium, by steps of {}", softening(scene)),
             Control::Opening(opening) => {
                 let (step, end) = (quantity(opening.step, "m"), quantity(opening.end, "m"));
                 format!("along the path of equilibrium, a crack opening by {step} per step, to {end}")
@@ -456,6 +457,16 @@ const TIME: &str = "wall time";
 fn threads() -> String {
     let threads = rayon::current_num_threads();
     format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
+}
+
+/// What the steps of a path are measured by.
+fn softening(scene: &Scene) -> &'static str {
+    let interfaces = scene.interfaces().kinds().iter().any(|kind| kind.law.is_bonded());
+    match (scene.solid.has_damage(), interfaces) {
+        (_, false) => "damage",
+        (true, true) => "damage and of interfaces that soften",
+        (false, true) => "interfaces that soften",
+    }
 }
 
 /// Two digits of a time.

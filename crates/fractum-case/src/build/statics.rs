@@ -1,7 +1,7 @@
 //! What a quasi-static run needs, and what it cannot do.
 
 use fractum_fem::{LocalDamping, NotSecant, Solid};
-use fractum_scene::statics::{self, ModesSettings, StaticSettings};
+use fractum_scene::statics::{self, ModesSettings, NoEquilibrium, StaticSettings};
 use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 
 use super::Context;
@@ -70,6 +70,8 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
     let given = [local, mass, stiffness, bulk_linear, bulk_quadratic].iter().any(|&value| value > 0.0);
     let damage = solid.has_damage();
     let heats = context.case.flows.heat.is_some();
+    let bonded = context.case.interfaces.iter().any(|interface| interface.law.is_bonded());
+    let opens = bonded && context.case.flows.liquid.is_none() && options.no_equilibrium == NoEquilibrium::Stop;
     let whole = if damage || heats { solver.end / STEPS } else { solver.end };
     let opening = options.opening.as_ref().map(|opening| statics::Opening {
         nodes: context.group_nodes(&opening.group, numbering),
@@ -85,6 +87,8 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
             Some(Control::Path | Control::Opening) => statics::Control::Path,
             // Heat does not flow back along a path.
             None if damage && !heats => statics::Control::Path,
+            // Liquid flows in time, and a scene that may move does so instead.
+            None if opens => statics::Control::TimeThenPath,
             None => statics::Control::Time,
         },
         step: solver.step.as_ref().map_or(whole, |step| step.value.min(solver.end)),

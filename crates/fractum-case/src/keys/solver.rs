@@ -35,7 +35,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.domain", K::Table, "", "Explicit: box outside of which free pieces of solids and bonded bodies, discrete elements and loose particles leave the run"),
     key("solver.domain.min", K::Point(D::LENGTH), "required", "Its lower corner; z is ignored if all bodies are 2D"),
     key("solver.domain.max", K::Point(D::LENGTH), "required", "Its upper corner, above the lower one"),
-    key("solver.control", K::Choice(names::<Control>), "\"path\" where something may break, else \"time\"", "Static only. time: given steps of time. path, opening: steps of damage, or of a crack's opening, along the path of equilibrium through snap-back"),
+    key("solver.control", K::Choice(names::<Control>), "\"path\" where a body may be damaged; \"time\" and then \"path\" where interfaces may break; else \"time\"", "Static only. time: given steps of time. path, opening: steps of damage and of interfaces that soften, or of a crack's opening, along the path of equilibrium through snap-back"),
     key("solver.opening", K::Table, "", "With control = \"opening\", required there: how far two groups have moved apart"),
     key("solver.opening.group", K::Text, "required", "Mesh group on one side"),
     key("solver.opening.against", K::Text, "required", "Mesh group on the other side"),

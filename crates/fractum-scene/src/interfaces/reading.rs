@@ -164,6 +164,6 @@ impl Interfaces {
     }
 }
 
-fn is_broken(point: &Point) -> bool {
+pub(super) fn is_broken(point: &Point) -> bool {
     point.state.residual <= BROKEN
 }

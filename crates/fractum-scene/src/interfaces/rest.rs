@@ -5,6 +5,7 @@ use fractum_kernels::interface::SpringInterface;
 use fractum_math::{Mat3, Vec3};
 
 use super::inside::pressure_in;
+use super::joints::PointPlace;
 use super::motion::Closing;
 use super::{InterfaceKind, Interfaces, Taken};
 
@@ -27,12 +28,15 @@ impl Interfaces {
     ///
     /// - `time`: of that field; `ahead`: duration from which the rate of pressures is taken [s]
     /// - `share`: part of the secant in their stiffness, the rest of which is their tangent
+    /// - `led`: the point whose softening is given, and how far it goes in this step
     pub(crate) fn springs(
         &self,
         field: &[Vec3],
         [time, ahead]: [f64; 2],
         share: f64,
+        led: Option<(PointPlace, f64)>,
     ) -> impl Iterator<Item = InterfaceSpring> {
+        let led = led.and_then(|(at, growth)| self.led(at, field, growth));
         let points = self.clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0);
         points.filter_map(move |point| {
             let InterfaceKind { law, stiffness, .. } = &self.kinds[point.kind as usize];
@@ -41,12 +45,16 @@ impl Interfaces {
             let jump = point.local(b - a);
             let mut state = point.state;
             let force = interface.load(jump, &mut state);
-            let traction = force.traction();
+            let mut traction = force.traction();
             let secant @ [along, across] = interface.secant(&jump, &force, &state);
             let mut stiffness = Mat3::from_diagonal(&Vec3::new(along, across, across));
             if share < 1.0 {
                 stiffness =
                     stiffness * share + interface.tangent(&jump, &point.state, &traction, secant) * (1.0 - share);
+            }
+            if let Some(led) = led.as_ref().and_then(|led| led.of(point, &interface)) {
+                stiffness = led.stiffness;
+                traction = led.traction + stiffness * (jump - led.jump);
             }
             let thrust = |time: f64| {
                 let pressure = pressure_in(&self.pressures, point.kind);

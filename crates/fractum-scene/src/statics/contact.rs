@@ -15,6 +15,7 @@ use crate::contacts::{Candidate, NodesOnShape};
 use crate::contacts::{Drive, RigidBody};
 use crate::coupling::Push;
 use crate::error::SceneError;
+use crate::interfaces::joints::PointPlace;
 use crate::interfaces::rest::InterfaceSpring;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -111,6 +112,22 @@ pub(super) struct Pressed {
     pressure: f64,
 }
 
+/// How what slips and what softens is held while forces do not balance.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hold {
+    /// Part of the secant of friction by which what slips is held along its way, where its force does not change: all of
+    /// it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
+    /// only friction holds without a stiffness. Likewise the part of the secant of interfaces that soften.
+    pub(super) share: f64,
+    /// The point of an interface whose softening is given, and how far it goes in this step.
+    pub(super) led: Option<(PointPlace, f64)>,
+}
+
+impl Hold {
+    /// By secants alone.
+    pub(super) const SECANT: Self = Hold { share: 1.0, led: None };
+}
+
 /// Springs of shapes on nodes that do not touch.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Also<'a> {
@@ -171,23 +188,21 @@ impl Scene {
 
 /// Springs of the nodes that touch at the last equilibrium, and of those that just do not.
 pub(super) fn springs_at_rest(scene: &Scene) -> Vec<Spring> {
-    contact_springs(scene, &scene.solid.displacement, [scene.clock.time; 2], 1.0, 1.0, Also::Near)
+    contact_springs(scene, &scene.solid.displacement, [scene.clock.time; 2], 1.0, Hold::SECANT, Also::Near)
 }
 
 /// Springs of the nodes that touch shapes or each other under a displacement field.
 ///
 /// - `times`: load parameters of the last equilibrium and of the field
 /// - `ahead`: duration from which the pace of the shapes is taken [s]
-/// - `slipping`: part of the secant of friction by which what slips is held along its way, where its force does not change: all of
-///   it comes to the end by many small steps, little of it may go from sticking to slipping and back for ever, and none leaves what
-///   only friction holds without a stiffness; likewise the part of the secant of interfaces that soften
+/// - `hold`: how what slips and what softens is held
 /// - `also`: what does not touch, and has a spring
 pub(super) fn contact_springs(
     scene: &Scene,
     field: &[Vec3],
     times: [f64; 2],
     ahead: f64,
-    slipping: f64,
+    hold: Hold,
     also: Also,
 ) -> Vec<Spring> {
     let pushed = |push: Push| {
@@ -198,7 +213,7 @@ pub(super) fn contact_springs(
         Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
-    springs.extend(scene.interfaces().springs(field, [times[1], ahead], slipping).map(|spring| {
+    springs.extend(scene.interfaces().springs(field, [times[1], ahead], hold.share, hold.led).map(|spring| {
         let InterfaceSpring { pair: [partner, node], normal, force, stiffness, rate } = spring;
         Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate }
     }));
@@ -237,7 +252,7 @@ pub(super) fn contact_springs(
             let mut stiffness = along * stiff + (Mat3::identity() - along) * holds;
             if went > 0.0 && held > 0.0 {
                 let way = slip / held;
-                stiffness -= way * way.transpose() * ((1.0 - slipping) * holds);
+                stiffness -= way * way.transpose() * ((1.0 - hold.share) * holds);
             }
             let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
             let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;

@@ -4,7 +4,7 @@ use fractum_fem::{DamagePoint, Seen, Solid};
 use fractum_math::Vec3;
 use fractum_sparse::SparseError;
 
-use super::contact::{Also, Spring, bring_back, contact_springs, forget_brought_back, has_contacts};
+use super::contact::{Also, Hold, Spring, bring_back, contact_springs, forget_brought_back, has_contacts};
 use super::equilibrium::{Boundary, boundary_at, check_loose, come_apart, unbalance};
 use super::{
     Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, Touching, path,
@@ -12,6 +12,8 @@ use super::{
 use crate::error::StepError;
 use crate::scene::Scene;
 
+/// Part of its softening over which no point of an interface goes in a step of the load parameter, unless it jumps.
+const FAR: f64 = 0.5;
 /// Share of an opening below which no extrapolation goes.
 const LEAST_SHARE: f64 = 1e-3;
 /// Part of the secant of friction that holds what slips: at first, and once that has not come to an end.
@@ -28,8 +30,12 @@ const MOST_BROUGHT_BACK: usize = 16;
 
 impl StaticSolver {
     /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
-    /// than any step of a path takes it.
-    pub(super) fn jumps(&self, points: &[DamagePoint]) -> bool {
+    /// than any step of a path takes it, or some point of an interface [`FAR`] along its own where a path may take the place of such steps.
+    pub(super) fn jumps(&self, scene: &Scene, points: &[DamagePoint], by_path: bool) -> bool {
+        if self.settings.control == Control::TimeThenPath && !by_path {
+            let most = scene.interfaces().most_grown(|node| self.response.start[node as usize]);
+            return most.is_some_and(|(_, growth)| growth > FAR);
+        }
         let far = |(point, seen): (&DamagePoint, &Seen)| {
             !point.broken && seen.stress > path::limit(point, GROWTH[2]) * (1.0 + 1e-9)
         };
@@ -54,6 +60,7 @@ impl StaticSolver {
         let present = scene.clock.time;
         self.system.begin();
         self.begin(scene, points, growth, by_damage && !monotone);
+        self.lead.begin(growth, by_damage);
         let (mut tau, mut found_at) = (longest, present);
         forget_brought_back(scene);
         self.touching.stretch.reset();
@@ -77,6 +84,7 @@ impl StaticSolver {
             let here = boundary_at(scene, present, present);
             let there = boundary_at(scene, present, present + ahead);
             self.respond(scene, &here, &there, ahead, present - found_at)?;
+            let leads = self.lead.at;
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
             tau = found;
             self.advance(&scene.solid, points, tau, monotone);
@@ -99,7 +107,9 @@ impl StaticSolver {
             // A body that is moved without strain bears no forces that its rounding could be held against.
             let linear = points.is_empty() && !has_contacts(scene);
             let is_rounding = linear && missing <= ROUNDING * self.response.driving;
-            if is_rounding || missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces) {
+            let balanced =
+                is_rounding || missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces);
+            if balanced && leads == self.lead.at {
                 slowest = slowest.max(iteration);
                 if bring_back(scene, &self.response.start, [present, present + tau], &mut self.touching.stretch) {
                     if brought_back == MOST_BROUGHT_BACK {
@@ -125,7 +135,7 @@ impl StaticSolver {
                 ratios.iter_mut().for_each(|ratio| *ratio = ratio.max(1.0));
                 shares.iter_mut().for_each(|share| *share = share.clamp(LEAST_SHARE, 1.0));
                 self.set_trial(&scene.solid, points);
-            } else if self.jumps(points) {
+            } else if self.jumps(scene, points, by_damage) {
                 return Ok(None);
             } else {
                 self.edges.loading.copy_from_slice(&self.edges.image);
@@ -174,7 +184,8 @@ impl StaticSolver {
     ) -> Result<(), StepError> {
         scene.debris.meet(&scene.solid, &self.touching.place);
         let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
-        self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, slipping, also);
+        let hold = Hold { share: slipping, led: self.lead.at.map(|at| (at, self.lead.growth)) };
+        self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, hold, also);
         self.couple(scene)?;
         let is_linear = scene.shape_contacts.is_empty() && scene.interfaces().is_empty();
         if self.elastic && self.prepared && is_linear {
@@ -184,7 +195,8 @@ impl StaticSolver {
         // Where what softens leaves no stable state near by, its secant still leads to one.
         if matches!(prepared, Err(SparseError::Indefinite { .. })) && !scene.interfaces().is_empty() && slipping < 1.0 {
             let also = if near { Also::Near } else { Also::Kept(&self.touching.kept) };
-            self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, 1.0, also);
+            let hold = Hold { share: 1.0, ..hold };
+            self.touching.springs = contact_springs(scene, &self.touching.place, times, longest, hold, also);
             prepared = self.system.prepare(scene, &self.trial, &self.touching.springs);
         }
         prepared.map_err(|error| come_apart(scene, error))?;
@@ -201,23 +213,20 @@ impl StaticSolver {
         growth: f64,
         by_damage: bool,
     ) -> Option<f64> {
-        if points.is_empty() {
-            return Some(longest);
+        if !points.is_empty() {
+            let Response { start, slope, start_stress, slope_stress, .. } = &mut self.response;
+            scene.solid.effective_stresses(start, start_stress);
+            scene.solid.effective_stress_changes(slope, slope_stress);
         }
-        let Response { start, slope, start_stress, slope_stress, .. } = &mut self.response;
-        scene.solid.effective_stresses(start, start_stress);
-        scene.solid.effective_stress_changes(slope, slope_stress);
-        match &self.settings.control {
-            Control::Time => Some(longest),
-            Control::Opening(opening) if !by_damage => {
-                let target = opening.of(&scene.solid.displacement) + opening.step * self.pace.part;
-                let found = opening.find(target.min(opening.end), start, slope)?;
-                Some(found.min(self.settings.end - scene.clock.time))
-            }
-            Control::Path | Control::Opening(_) => {
-                path::largest_step(&scene.solid, points, start_stress, slope_stress, growth, longest)
-            }
+        if by_damage {
+            let (response, interfaces) = (&self.response, scene.interfaces());
+            let way = path::Way { solid: &scene.solid, points, interfaces, response, growth };
+            return self.lead.step(&way, longest);
         }
+        let Control::Opening(opening) = &self.settings.control else { return Some(longest) };
+        let target = opening.of(&scene.solid.displacement) + opening.step * self.pace.part;
+        let found = opening.find(target.min(opening.end), &self.response.start, &self.response.slope)?;
+        Some(found.min(self.settings.end - scene.clock.time))
     }
 
     /// Goes on by τ: displacements, what the edges see there, and the damage of that.
@@ -249,7 +258,8 @@ impl StaticSolver {
         self.touching.place.clone_from(start);
         if has_contacts(scene) {
             scene.debris.meet(&scene.solid, start);
-            for spring in contact_springs(scene, start, [present, present + tau], longest, 1.0, Also::Nothing) {
+            for spring in contact_springs(scene, start, [present, present + tau], longest, Hold::SECANT, Also::Nothing)
+            {
                 spring.push(spring.force, &mut load);
             }
         }

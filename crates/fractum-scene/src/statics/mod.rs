@@ -14,6 +14,7 @@ mod equilibrium;
 mod faer;
 mod in_situ;
 mod iteration;
+mod lead;
 mod linear_system;
 mod modes;
 mod opening;
@@ -29,7 +30,7 @@ mod support_check;
 mod system;
 mod wet;
 
-use fractum_fem::{CellDamage, Seen, motion};
+use fractum_fem::{CellDamage, DamagePoint, Seen, motion};
 use fractum_math::{Sym3, Vec3};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
@@ -46,11 +47,13 @@ pub use system::LinearWork;
 
 use crate::conduct::warm_to;
 use crate::error::StepError;
+use crate::interfaces::joints::PointPlace;
 use crate::scene::Scene;
 use crate::step::StepReport;
 use anderson::Anderson;
 use contact::{Pressed, Spring};
 use equilibrium::{AppliedForces, accept_equilibrium, forces_at_rest, no_equilibrium};
+use lead::Lead;
 use linear_system::LinearSystem;
 
 /// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
@@ -85,6 +88,9 @@ pub struct StaticSolver {
     trial: CellDamage,
     response: Response,
     touching: Touching,
+    lead: Lead,
+    /// Whether steps of the load parameter have given way to a path.
+    follows: bool,
     edges: Edges,
     anderson: Anderson,
     /// The solution with liquid in interfaces, once it has begun.
@@ -151,6 +157,8 @@ pub struct StaticState {
     part: f64,
     trend: Vec<f64>,
     touching: Vec<[u32; 2]>,
+    lead: Option<PointPlace>,
+    follows: bool,
     applied: AppliedForces,
     largest_forces: f64,
     steps: u64,
@@ -182,6 +190,8 @@ impl StaticSolver {
             trial: solid.cell_damage(),
             response: Response { start: zero.clone(), slope: zero.clone(), right: zero, ..Response::default() },
             touching: Touching::default(),
+            lead: Lead::default(),
+            follows: false,
             edges: Edges::default(),
             anderson: Anderson::default(),
             wet: None,
@@ -215,6 +225,8 @@ impl StaticSolver {
             part: self.pace.part,
             trend: self.pace.trend.clone(),
             touching: self.touching.pairs.clone(),
+            lead: self.lead.at,
+            follows: self.follows,
             applied: self.applied.clone(),
             largest_forces: self.largest_forces,
             steps: self.steps,
@@ -230,6 +242,7 @@ impl StaticSolver {
         self.pace = Pace { growth: state.growth, part: state.part, trend: state.trend };
         self.applied = state.applied;
         self.touching.pairs = state.touching;
+        (self.lead.at, self.follows) = (state.lead, state.follows);
         (self.largest_forces, self.steps) = (state.largest_forces, state.steps);
         self.iterations = state.iterations as usize;
         *self.system.work() = LinearWork {
@@ -244,6 +257,7 @@ impl StaticSolver {
         self.applied = forces_at_rest(scene);
         self.pace.growth = GROWTH[0];
         self.pace.trend.clear();
+        self.lead = Lead::default();
     }
 
     /// Entries of the Cholesky factor; none with an iterative solver.
@@ -255,7 +269,7 @@ impl StaticSolver {
     pub fn is_finished(&self, scene: &Scene) -> bool {
         let open = match &self.settings.control {
             Control::Opening(opening) => opening.of(&scene.solid.displacement) >= opening.end * (1.0 - 1e-12),
-            Control::Time | Control::Path => false,
+            Control::Time | Control::TimeThenPath | Control::Path => false,
         };
         open || scene.clock.time >= self.settings.end * (1.0 - 1e-12) || self.has_used_up_its_steps()
     }
@@ -276,24 +290,28 @@ impl StaticSolver {
         motion::wake_phase_fields(&mut scene.solid);
         let points = scene.solid.damage_points();
         self.damage = scene.solid.cell_damage();
-        let intact = points.iter().all(|point| point.damage < INTACT);
+        let intact = points.iter().all(|point| point.damage < INTACT) && scene.interfaces().is_whole();
         let mut monotone = false;
-        let by_path = self.settings.control == Control::Path;
+        let mut by_path = self.follows || self.settings.control == Control::Path;
         let mut by_damage = by_path;
-        let at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, NEAR_ONSET);
+        let edges_at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, NEAR_ONSET);
         let mut held = true;
         loop {
+            let opens = if intact && by_path { self.opens(scene) } else { None };
+            let at_onset = edges_at_onset || opens.is_some();
             let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.pace.part);
             // A path stops just below the onset of damage, which may be its peak, and just above it where equilibrium goes on there.
             let growth = match intact {
                 true if by_path && !at_onset => -ONSET,
-                true if held => ONSET,
+                true if held && opens.is_none() => ONSET,
                 _ => self.pace.growth,
             };
+            self.lead.at = self.lead.at.or(opens);
+            let leads = self.lead.at;
             warm_to(scene, scene.clock.time + longest)?;
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found
-                && !self.jumps(&points)
+                && !self.jumps(scene, &points, by_path)
             {
                 self.pace.trend.clear();
                 self.pace.trend.extend(
@@ -307,25 +325,37 @@ impl StaticSolver {
                     self.pace.growth = (1.4 * self.pace.growth).min(GROWTH[2]);
                     self.pace.part = (2.0 * self.pace.part).min(1.0);
                 }
+                self.choose_lead(scene, &points);
                 let before = scene.solid.displacement.clone();
                 scene.solid.raise_history(&self.edges.seen, &self.trial, &before, &self.response.start);
                 self.steps += 1;
                 return accept_equilibrium(scene, &self.response.start, time, &mut self.applied);
             }
+            self.lead.at = leads;
             if at_onset && held {
                 held = false;
-                continue;
+                if opens.is_none() {
+                    continue;
+                }
             }
             let smallest = match self.settings.control {
                 Control::Time => self.pace.part <= SMALLEST_PART,
+                Control::TimeThenPath if !by_path => self.pace.part <= SMALLEST_PART,
                 Control::Opening(_) if !by_damage => {
                     // Where several states have this opening, a step of damage is still one of them.
                     by_damage = self.pace.part <= SMALLEST_OPENING;
                     false
                 }
-                Control::Path | Control::Opening(_) => self.pace.growth <= GROWTH[1] || growth.abs() == ONSET,
+                Control::TimeThenPath | Control::Path | Control::Opening(_) => {
+                    self.pace.growth <= GROWTH[1] || growth.abs() == ONSET
+                }
             };
             if smallest && monotone {
+                if self.settings.control == Control::TimeThenPath && !by_path {
+                    (self.follows, by_path, by_damage, monotone) = (true, true, true, false);
+                    (self.pace.growth, self.pace.part) = (GROWTH[0], 1.0);
+                    continue;
+                }
                 warm_to(scene, scene.clock.time)?;
                 return Err(no_equilibrium(scene));
             }
@@ -333,5 +363,29 @@ impl StaticSolver {
             self.pace.growth = (0.5 * self.pace.growth).max(GROWTH[1]);
             self.pace.part = (0.5 * self.pace.part).max(SMALLEST_PART);
         }
+    }
+
+    /// Whether a path has taken the place of steps of the load parameter.
+    pub fn has_turned_to_path(&self) -> bool {
+        self.follows
+    }
+
+    /// The point of an interface that stands at its strength.
+    fn opens(&self, scene: &Scene) -> Option<PointPlace> {
+        let (at, ratio) = scene.interfaces().farthest(|node| scene.solid.displacement[node as usize], 0.0)?;
+        (ratio >= 1.0 - NEAR_ONSET).then_some(at)
+    }
+
+    /// What has gone farthest in a step leads the next one.
+    fn choose_lead(&mut self, scene: &Scene, points: &[DamagePoint]) {
+        if self.settings.control == Control::Time || !scene.interfaces().may_soften() {
+            return;
+        }
+        let grown = |(seen, point): (&Seen, &DamagePoint)| {
+            if point.broken { 0.0 } else { (seen.stress - point.kappa) / point.kappa.max(point.softening) }
+        };
+        let edges = self.edges.seen.iter().zip(points).map(grown).fold(0.0, f64::max);
+        let most = scene.interfaces().most_grown(|node| self.response.start[node as usize]);
+        self.lead.at = most.filter(|(_, growth)| *growth > edges).map(|(at, _)| at);
     }
 }

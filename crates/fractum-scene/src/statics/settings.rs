@@ -7,6 +7,8 @@ use super::opening::Opening;
 pub enum Control {
     /// In steps of the load parameter.
     Time,
+    /// In steps of the load parameter, and along the path from the first one on that has no equilibrium.
+    TimeThenPath,
     /// In steps of damage, through snap-back.
     Path,
     /// In steps of the opening of a crack, through snap-back.

@@ -113,7 +113,7 @@ impl Stage<'_> {
         let breaks = built.scene.solid.has_damage();
         let Some(settings) = &built.statics else { return self.tried(&mut built.scene, solver, built.conducts_alone) };
         let increments = match settings.control {
-            Control::Time => (self.span / settings.step).ceil(),
+            Control::Time | Control::TimeThenPath => (self.span / settings.step).ceil(),
             Control::Path | Control::Opening(_) => 1.0,
         };
         let (entries, direct) = Stiffness::new(&built.scene).ok()?.entries();
@@ -186,7 +186,7 @@ impl Stage<'_> {
         let output = &self.case.output;
         let [frames, rows] = [output.fields_every, output.history_every].map(|every| (self.span / every).ceil() + 1.0);
         match &built.statics {
-            Some(settings) if settings.control == Control::Time => {
+            Some(settings) if matches!(settings.control, Control::Time | Control::TimeThenPath) => {
                 let steps = (self.span / settings.step).ceil() + 1.0;
                 [frames.min(steps), steps]
             }

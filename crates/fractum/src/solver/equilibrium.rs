@@ -95,8 +95,13 @@ impl EquilibriumRun {
             Phase::AtRest => {}
         }
         self.phase = Phase::AtRest;
+        let (before, followed) = (scene.clock.time, self.solver.has_turned_to_path());
         match phases.timed(Part::Solid, || self.solver.step(scene)) {
-            Ok(_) => Ok(Advance::measured(scene.clock.time, scene.clock.dt_before, false)),
+            Ok(_) => {
+                let advance = Advance::measured(scene.clock.time, scene.clock.dt_before, false);
+                let turned = !followed && self.solver.has_turned_to_path();
+                Ok(Advance { event: turned.then(|| turned_to_path(before)), ..advance })
+            }
             Err(StepError::NoEquilibrium { .. }) if self.solver.settings().no_equilibrium == NoEquilibrium::Motion => {
                 Ok(phases.timed(Part::Solid, || self.begin_motion(scene)))
             }
@@ -155,4 +160,12 @@ impl EquilibriumRun {
             linear.factorisations, linear.solutions, linear.iterations
         )
     }
+}
+
+/// What the user hears where a path begins.
+fn turned_to_path(time: f64) -> String {
+    format!(
+        "t = {}: no equilibrium at a larger load; from here on the run follows the path of equilibrium, by steps of interfaces that soften",
+        quantity(time, "s")
+    )
 }
