@@ -31,8 +31,8 @@ const MOST_BROUGHT_BACK: usize = 16;
 impl StaticSolver {
     /// Whether the state found lies beyond states that are no equilibrium: some edge went further down its softening curve
     /// than any step of a path takes it, or some point of an interface [`FAR`] along its own where a path may take the place of such steps.
-    pub(super) fn jumps(&self, scene: &Scene, points: &[DamagePoint], by_path: bool) -> bool {
-        if self.settings.control == Control::TimeThenPath && !by_path {
+    pub(super) fn jumps(&self, scene: &Scene, points: &[DamagePoint], by_damage: bool) -> bool {
+        if matches!(self.settings.control, Control::TimeThenPath | Control::Opening(_)) && !by_damage {
             let most = scene.interfaces().most_grown(|node| self.response.start[node as usize]);
             return most.is_some_and(|(_, growth)| growth > FAR);
         }

@@ -311,7 +311,7 @@ impl StaticSolver {
             warm_to(scene, scene.clock.time + longest)?;
             let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
             if let Some((time, iterations)) = found
-                && !self.jumps(scene, &points, by_path)
+                && !self.jumps(scene, &points, by_damage)
             {
                 self.pace.trend.clear();
                 self.pace.trend.extend(
