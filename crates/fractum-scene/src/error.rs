@@ -128,7 +128,7 @@ pub enum StepError {
     },
     /// No equilibrium was found however small the step.
     #[error(
-        "step {step}, t = {time:.6e} s: no equilibrium found; the solid may have no static answer here - use control = \"path\", let it move to the \
+        "step {step}, t = {time:.6e} s: no equilibrium found; the solid may have no static answer here - use control = \"path\" if the run does not follow it yet, let it move to the \
          next one with no_equilibrium = \"motion\", or end the run before with solver.stop_when"
     )]
     NoEquilibrium {

@@ -38,6 +38,13 @@ fn toughness_energy_and_lengths_become_each_other() {
     assert_eq!(with(&field, "tensile strength ft"), "10.2 MPa");
     assert_eq!(with(&[&field[..], &["--model", "at1"]].concat(), "tensile strength ft"), "19.3 MPa");
     assert_eq!(with(&field, "fracture toughness K_Ic"), "0.719 MPa*m^0.5");
+    // A strength that is given is that of which a rock has its toughness, and takes the place of a specimen's.
+    let granite =
+        |option: &str, strength: &str, label: &str| value(&place, &["material", "granite", option, strength], label);
+    assert_eq!(granite("--tensile-strength", "8 MPa", "fracture toughness K_Ic"), "1.45 MPa*m^0.5");
+    assert_eq!(granite("--compressive-strength", "200 MPa", "compressive strength"), "200 MPa");
+    let crushed = ["material", "alumina", "--compressive-strength", "2.2 GPa"];
+    assert_eq!(value(&place, &crushed, "compressive strength"), "2.2 GPa");
     // The Brazilian strength of a granite over 6.88, and 0.8 of it in direct tension.
     assert_eq!(value(&place, &["material", "lac-du-bonnet"], "fracture toughness K_Ic"), "1.35 MPa*m^0.5");
 }

@@ -15,7 +15,7 @@ use self::known::{KNOWN, Kind, Measured, Rock, Specimen};
 pub(crate) struct MaterialArguments {
     /// Material, such as granite; without one, the list. `own` is one of which all is given.
     name: Option<String>,
-    /// Compressive strength of the rock, or characteristic strength of the concrete, such as "40 MPa".
+    /// Compressive strength, such as "40 MPa"; of concrete the characteristic one. Concrete and rocks follow from it.
     #[arg(long)]
     compressive_strength: Option<String>,
     /// Young's modulus.
@@ -27,7 +27,7 @@ pub(crate) struct MaterialArguments {
     /// Density.
     #[arg(long)]
     density: Option<String>,
-    /// Tensile strength.
+    /// Tensile strength. The toughness of a rock follows from it.
     #[arg(long)]
     tensile_strength: Option<String>,
     /// Fracture toughness K_Ic, such as "1.5e6 Pa*m^0.5": the fracture energy is K_Ic² (1 - nu²)/E.
@@ -62,6 +62,9 @@ impl PhaseField {
         }
     }
 }
+
+const COMPRESSIVE: &str = "--compressive-strength";
+const TENSILE: &str = "--tensile-strength";
 
 /// A number with its range and where it comes from, in SI.
 #[derive(Clone)]
@@ -98,6 +101,8 @@ struct Proposal {
     toughness: Option<Row>,
     energy: Option<Row>,
     weibull: Option<f64>,
+    /// Whether they follow from the compressive strength.
+    follows: bool,
 }
 
 /// Lists the materials, or proposes the numbers of one.
@@ -121,14 +126,16 @@ pub(crate) fn run(arguments: &MaterialArguments) -> Result<ExitCode, Failure> {
 fn of_name(name: &str, arguments: &MaterialArguments) -> Result<Proposal, Failure> {
     let Some(known) = KNOWN.iter().find(|known| known.name == name) else {
         let names = KNOWN.iter().map(|known| known.name);
-        let hint = nearest(name, names.clone()).map(|near| format!("; did you mean {near}?")).unwrap_or_default();
+        let hint = nearest(name, names.clone()).map_or(";".to_owned(), |near| format!("; did you mean {near}?"));
         let names: Vec<&str> = names.collect();
         return Err(Failure::input(format!("no material \"{name}\"{hint} known: {}, own", names.join(", "))));
     };
-    let strength = given(arguments.compressive_strength.as_deref(), "--compressive-strength", Dimension::PRESSURE)?;
     match &known.kind {
-        Kind::Concrete => concrete(strength),
-        Kind::Rock(rock) => of_rock(rock, strength),
+        Kind::Concrete => concrete(pressure(&arguments.compressive_strength, COMPRESSIVE)?),
+        Kind::Rock(rock) => {
+            let tension = pressure(&arguments.tensile_strength, TENSILE)?;
+            of_rock(rock, pressure(&arguments.compressive_strength, COMPRESSIVE)?, tension)
+        }
         Kind::Specimen(specimen) => Ok(of_specimen(specimen)),
     }
 }
@@ -170,12 +177,13 @@ fn concrete(strength: Option<f64>) -> Result<Proposal, Failure> {
             [0.7 * energy, 1.3 * energy],
             "fib Model Code 2010, 5.1.5; scatter of 30 % (Bažant & Becq-Giraudon 2002)",
         )),
+        follows: true,
         ..Proposal::default()
     })
 }
 
-/// A rock by its compressive strength.
-fn of_rock(rock: &Rock, strength: Option<f64>) -> Result<Proposal, Failure> {
+/// A rock by its compressive strength, and by that in direct tension if it is known.
+fn of_rock(rock: &Rock, strength: Option<f64>, tension: Option<f64>) -> Result<Proposal, Failure> {
     let middle = |[low, high]: [f64; 2]| (low * high).sqrt();
     let [low, high] = rock.compression;
     let usual = middle(rock.compression);
@@ -189,7 +197,8 @@ fn of_rock(rock: &Rock, strength: Option<f64>) -> Result<Proposal, Failure> {
         )));
     }
     let [soft, stiff] = rock.modulus_ratio;
-    let splitting = middle(rock.splitting) * (compression / usual).sqrt();
+    let splitting =
+        tension.map_or(middle(rock.splitting) * (compression / usual).sqrt(), |tension| tension / rock.direct);
     let toughness = |splitting: f64| splitting * 1e6 / 6.88e6;
     Ok(Proposal {
         density: Some(Row::of(rock.density, "usual")),
@@ -211,7 +220,7 @@ fn of_rock(rock: &Rock, strength: Option<f64>) -> Result<Proposal, Failure> {
             rock.direct * splitting,
             rock.splitting.map(|strength| rock.direct * strength),
             format!(
-                "{} of the Brazilian strength (Perras & Diederichs 2014), range of Attewell & Farmer (1976)",
+                "{} of the Brazilian strength (Perras & Diederichs 2014); its range by Attewell & Farmer (1976), the middle of it with the root of the compressive strength",
                 rock.direct
             ),
         )),
@@ -220,6 +229,7 @@ fn of_rock(rock: &Rock, strength: Option<f64>) -> Result<Proposal, Failure> {
             rock.splitting.map(toughness),
             "Brazilian strength over 6.88 (Zhang 2002)",
         )),
+        follows: true,
         ..Proposal::default()
     })
 }
@@ -234,6 +244,7 @@ fn of_specimen(specimen: &Specimen) -> Proposal {
         toughness: Some((&specimen.toughness).into()),
         energy: None,
         weibull: specimen.weibull,
+        follows: false,
     }
 }
 
@@ -242,11 +253,15 @@ impl Proposal {
     fn take_given(&mut self, arguments: &MaterialArguments) -> Result<(), Failure> {
         let toughness =
             Dimension::LENGTH.power(0.5).and_then(|root| Dimension::PRESSURE.times(root)).unwrap_or(Dimension::NONE);
+        // That of concrete and rock is what the others are made of.
+        if let Some(value) = pressure(&arguments.compressive_strength, COMPRESSIVE)?.filter(|_| !self.follows) {
+            self.compression = Some(Row::of(value, "given"));
+        }
         let rows: [(&mut Option<Row>, &Option<String>, &str, Dimension); 6] = [
             (&mut self.density, &arguments.density, "--density", Dimension::DENSITY),
             (&mut self.young, &arguments.young_modulus, "--young-modulus", Dimension::PRESSURE),
             (&mut self.poisson, &arguments.poisson_ratio, "--poisson-ratio", Dimension::NONE),
-            (&mut self.tension, &arguments.tensile_strength, "--tensile-strength", Dimension::PRESSURE),
+            (&mut self.tension, &arguments.tensile_strength, TENSILE, Dimension::PRESSURE),
             (&mut self.toughness, &arguments.toughness, "--toughness", toughness),
             (&mut self.energy, &arguments.fracture_energy, "--fracture-energy", Dimension::FRACTURE_ENERGY),
         ];
@@ -368,6 +383,10 @@ impl Proposal {
         }
         Ok(())
     }
+}
+
+fn pressure(text: &Option<String>, option: &str) -> Result<Option<f64>, Failure> {
+    given(text.as_deref(), option, Dimension::PRESSURE)
 }
 
 /// A number of the user, above 0.
