@@ -211,7 +211,7 @@ def checks():
     shape = 0.5 * (1 - s) ** 0.5 * (1 + s / 2 + 3 / 8 * s**2 - 0.363 * s**3 + 0.731 * s**4)
     ring = Piece("ring", (1 - s) * radius, radius, 3 * radius, 0.05 * zone, short).largest_load() / (np.pi * (s * radius) ** 2)
     print(f"rod with a notch of 200 process zones around it {ring / (stiffer * toughness / (shape * (np.pi * s * radius) ** 0.5)) - 1:+.2%} of elastic fracture")
-    depth = 1e-5 * zone
+    s, depth = 0.25, 1e-5 * zone
     beam = Piece("beam", s * depth, depth, 2 * depth, 0.005 * depth, far=depth / 200).largest_load()
     print(f"notched beam of 0.00001 process zones {beam / (strength * 0.1 * (0.75 * depth) ** 2 / (2 * depth)) - 1:+.2%} of a plastic ligament")
     material = Material(softening="linear")
