@@ -17,12 +17,26 @@
 /// add_multiple_fast(&mut y, &[1.0, 1.0], 0.5);
 /// assert_eq!(y, [1.5, 2.5]);
 /// ```
+///
+/// A long body may name a short one of the same bits, `= long, otherwise short`, for processors of this family without those vectors: they are
+/// old and slow anyway, and the long body need not be compiled for them.
 #[macro_export]
 macro_rules! widest {
     (
         $(#[$attribute:meta])*
         $visible:vis fn $name:ident$(<$law:ident: $bound:path $(, const $number:ident: $kind:ty)*>)?
             ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:path;
+    ) => {
+        $crate::widest! {
+            $(#[$attribute])*
+            $visible fn $name$(<$law: $bound $(, const $number: $kind)*>)?($($argument: $type),*) $(-> $result)?
+                = $body, otherwise $body;
+        }
+    };
+    (
+        $(#[$attribute:meta])*
+        $visible:vis fn $name:ident$(<$law:ident: $bound:path $(, const $number:ident: $kind:ty)*>)?
+            ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $body:path, otherwise $short:path;
     ) => {
         $(#[$attribute])*
         $visible fn $name$(<$law: $bound $(, const $number: $kind)*>)?($($argument: $type),*) $(-> $result)? {
@@ -37,8 +51,12 @@ macro_rules! widest {
                     #[allow(unsafe_code)]
                     return unsafe { wide$(::<$law $(, $number)*>)?($($argument),*) };
                 }
+                $short($($argument),*)
             }
-            $body($($argument),*)
+            #[cfg(not(target_arch = "x86_64"))]
+            {
+                $body($($argument),*)
+            }
         }
     };
 }

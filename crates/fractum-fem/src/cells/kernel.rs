@@ -3,134 +3,12 @@
 use fractum_math::{FOUR, Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
-use crate::body::elasticity::{Elasticity, Linear};
+use crate::body::elasticity::Elasticity;
 use crate::cells::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
-use crate::cells::thermal_strain::ThermalStrain;
+use crate::cells::law::CellLaw;
 use crate::cells::viscosity::{BodyViscosity, ViscousCells};
 use crate::element::four_turns::FourGradients;
 use crate::element::polar::{conjugate, corotational_strain, product, strain_and_turn};
-
-/// Stress of a cell for its strain; owns the history of the cells of a block.
-pub(crate) trait CellLaw {
-    /// Whether the law is faster with four cells at a time.
-    const BY_FOURS: bool = false;
-    /// Whether stress has the axes of strain.
-    const IS_COAXIAL: bool = true;
-    /// Stress [Pa] times the volume of cell `cell` [m³].
-    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3;
-    /// The same of the four cells from `first` on.
-    #[inline(always)]
-    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
-        let mut stresses = [Sym3::ZERO; FOUR];
-        for k in 0..FOUR {
-            // All elements of a cell without volume have been removed.
-            if volumes[k] > 0.0 {
-                stresses[k] = self.scaled_stress(first + k, strains[k], volumes[k]);
-            }
-        }
-        stresses
-    }
-    /// Part of the stiffness that is left, 1 - d.
-    fn integrity(&self, cell: usize) -> f64;
-}
-
-/// An elastic block: sums its energy when asked to.
-pub(crate) struct ElasticCells<L> {
-    pub(crate) elasticity: L,
-    pub(crate) energy: Option<f64>,
-}
-
-impl<L: Linear> CellLaw for ElasticCells<L> {
-    const IS_COAXIAL: bool = L::IS_COAXIAL;
-
-    #[inline(always)]
-    fn scaled_stress(&mut self, _cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        let stress = self.elasticity.stress(strain) * volume;
-        if let Some(energy) = &mut self.energy {
-            *energy += 0.5 * stress.dot(strain);
-        }
-        stress
-    }
-
-    #[inline(always)]
-    fn integrity(&self, _cell: usize) -> f64 {
-        1.0
-    }
-}
-
-/// The law of cells that expand: it sees the strain beyond the thermal one.
-pub(crate) struct ExpandingCells<'a, L> {
-    pub(crate) law: &'a mut L,
-    pub(crate) thermal: &'a ThermalStrain,
-    /// Work that the whole of the present change of temperatures does at these stresses [J].
-    pub(crate) work: f64,
-}
-
-impl<L> ExpandingCells<'_, L> {
-    #[inline(always)]
-    fn book(&mut self, cell: usize, scaled_stress: Sym3) {
-        self.work -= self.thermal.change[cell] * scaled_stress.dot(self.thermal.unit);
-    }
-}
-
-impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
-    const BY_FOURS: bool = L::BY_FOURS;
-    const IS_COAXIAL: bool = L::IS_COAXIAL;
-
-    #[inline(always)]
-    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        let stress = self.law.scaled_stress(cell, self.thermal.elastic(cell, strain), volume);
-        self.book(cell, stress);
-        stress
-    }
-
-    #[inline(always)]
-    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
-        let mut elastic = *strains;
-        for k in 0..FOUR {
-            elastic[k] = self.thermal.elastic(first + k, strains[k]);
-        }
-        let stresses = self.law.scaled_stresses(first, &elastic, volumes);
-        for k in 0..FOUR {
-            self.book(first + k, stresses[k]);
-        }
-        stresses
-    }
-
-    #[inline(always)]
-    fn integrity(&self, cell: usize) -> f64 {
-        self.law.integrity(cell)
-    }
-}
-
-/// The law of cells that came in during the run: it sees the strain since then.
-pub(crate) struct BornCells<'a, L> {
-    pub(crate) law: &'a mut L,
-    /// Strain of each cell as it came in.
-    pub(crate) born: &'a [Sym3],
-}
-
-impl<L: CellLaw> CellLaw for BornCells<'_, L> {
-    const BY_FOURS: bool = L::BY_FOURS;
-    // Stress has the axes of what the strain has changed by.
-    const IS_COAXIAL: bool = false;
-
-    #[inline(always)]
-    fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
-        self.law.scaled_stress(cell, strain - self.born[cell], volume)
-    }
-
-    #[inline(always)]
-    fn scaled_stresses(&mut self, first: usize, strains: &[Sym3; FOUR], volumes: &[f64; FOUR]) -> [Sym3; FOUR] {
-        let since = std::array::from_fn(|k| self.born.get(first + k).map_or(strains[k], |born| strains[k] - *born));
-        self.law.scaled_stresses(first, &since, volumes)
-    }
-
-    #[inline(always)]
-    fn integrity(&self, cell: usize) -> f64 {
-        self.law.integrity(cell)
-    }
-}
 
 /// Stiffness over the undamaged one above which a cell carries: what is turned inside out below it changes no energy to
 /// speak of.
@@ -235,8 +113,21 @@ fn forces_by_runs<const COROTATIONAL: bool, L: CellLaw>(
     scratch: &mut Scratch,
     law: &mut L,
 ) -> Option<usize> {
+    if L::IS_RARE {
+        return forces_by_cells::<COROTATIONAL, L>(cells, scratch, law);
+    }
     let mut sweep = Sweep::<COROTATIONAL, L> { scratch, law, inverted: None };
     for &run in &cells.runs {
+        // Cells that turn take more arithmetic than memory.
+        if COROTATIONAL && L::IS_COAXIAL {
+            let mut begin = run.begin;
+            while begin < run.end {
+                let alone = sweep.turning_run(cells, Run { begin, ..run });
+                sweep.long_run(cells, alone);
+                begin = alone.end;
+            }
+            continue;
+        }
         match run.gradients {
             2 => sweep.run::<2>(cells, run),
             3 => sweep.run::<3>(cells, run),
@@ -251,6 +142,18 @@ fn forces_by_runs<const COROTATIONAL: bool, L: CellLaw>(
     sweep.inverted
 }
 
+/// The same forces by one loop for cells of any number of nodes: an eighth of the instructions.
+#[inline(always)]
+fn forces_by_cells<const COROTATIONAL: bool, L: CellLaw>(
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+) -> Option<usize> {
+    let mut sweep = Sweep::<COROTATIONAL, L> { scratch, law, inverted: None };
+    sweep.long_run(cells, Run { begin: 0, end: cells.len(), gradients: 0 });
+    sweep.inverted
+}
+
 struct Sweep<'a, const COROTATIONAL: bool, L> {
     scratch: &'a mut Scratch,
     law: &'a mut L,
@@ -262,8 +165,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     #[inline(always)]
     fn run<const N: usize>(&mut self, cells: &Cells, run: Run) {
         let Run { mut begin, end, .. } = run;
-        // Cells that turn take more arithmetic than memory.
-        if L::BY_FOURS || COROTATIONAL && L::IS_COAXIAL {
+        if L::BY_FOURS && !COROTATIONAL {
             let start = cells.starts[begin] as usize;
             let gradients = cells.gradients[start..].chunks_exact(FOUR * N);
             let local = cells.local[start + begin..].chunks_exact(FOUR * (N + 1));
@@ -279,6 +181,67 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         let volume = &cells.volume[begin..end];
         for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(volume) {
             self.cell(cell, local, gradients, volume);
+        }
+    }
+
+    /// Cells that turn, four at a time, where only what touches nodes is written out for each number of gradients. Returns the next ones that must
+    /// be done alone: those of many nodes, four of which one is stretched far, or the last of the run.
+    #[inline(always)]
+    fn turning_run(&mut self, cells: &Cells, run: Run) -> Run {
+        let Run { mut begin, end, gradients: count } = run;
+        if !(2..=8).contains(&count) {
+            return run;
+        }
+        while begin + FOUR <= end {
+            let start = cells.starts[begin] as usize;
+            let gradients = &cells.gradients[start..start + FOUR * count];
+            let local = &cells.local[start + begin..start + begin + FOUR * (count + 1)];
+            let volumes = std::array::from_fn(|k| cells.volume[begin + k]);
+            if volumes != [0.0; FOUR] {
+                let mut columns = [[Lane::ZERO; 3]; FOUR];
+                match count {
+                    2 => self.gather::<2>(local, gradients, &mut columns),
+                    3 => self.gather::<3>(local, gradients, &mut columns),
+                    4 => self.gather::<4>(local, gradients, &mut columns),
+                    5 => self.gather::<5>(local, gradients, &mut columns),
+                    6 => self.gather::<6>(local, gradients, &mut columns),
+                    7 => self.gather::<7>(local, gradients, &mut columns),
+                    _ => self.gather::<8>(local, gradients, &mut columns),
+                }
+                if !self.turned_stresses(begin, &volumes, &mut columns) {
+                    return Run { begin, end: begin + FOUR, gradients: count };
+                }
+                match count {
+                    2 => self.scatter::<2>(local, gradients, &columns),
+                    3 => self.scatter::<3>(local, gradients, &columns),
+                    4 => self.scatter::<4>(local, gradients, &columns),
+                    5 => self.scatter::<5>(local, gradients, &columns),
+                    6 => self.scatter::<6>(local, gradients, &columns),
+                    7 => self.scatter::<7>(local, gradients, &columns),
+                    _ => self.scatter::<8>(local, gradients, &columns),
+                }
+            }
+            begin += FOUR;
+        }
+        Run { begin, end, gradients: count }
+    }
+
+    /// Displacement gradients of four cells of `N` gradients each.
+    #[inline(always)]
+    fn gather<const N: usize>(&self, local: &[u16], gradients: &[[f64; 3]], columns: &mut [[Lane; 3]; FOUR]) {
+        // Loops instead of closures: those might be compiled apart, for any processor.
+        for k in 0..FOUR {
+            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
+            columns[k] = gradient_columns(&self.scratch.displacement, local, gradients);
+        }
+    }
+
+    /// Adds the forces of four cells of `N` gradients each.
+    #[inline(always)]
+    fn scatter<const N: usize>(&mut self, local: &[u16], gradients: &[[f64; 3]], columns: &[[Lane; 3]; FOUR]) {
+        for k in 0..FOUR {
+            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
+            add_cell_forces(&mut self.scratch.force, local, gradients, columns[k]);
         }
     }
 
@@ -302,7 +265,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, strain, &turn));
     }
 
-    /// Four cells of `N` gradients each.
+    /// Four cells of `N` gradients each that do not turn.
     #[inline(always)]
     fn four_cells<const N: usize>(
         &mut self,
@@ -314,56 +277,29 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         if *volumes == [0.0; FOUR] {
             return;
         }
-        // Loops instead of closures: those might be compiled apart, for any processor.
         let mut columns = [[Lane::ZERO; 3]; FOUR];
-        for k in 0..FOUR {
-            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            columns[k] = gradient_columns(&self.scratch.displacement, local, gradients);
-        }
-        if COROTATIONAL {
-            self.turned_stresses(first, volumes, &mut columns);
-        } else {
-            let mut strains = [Sym3::ZERO; FOUR];
-            for k in 0..FOUR {
-                let [x, y, z] = columns[k];
-                strains[k] = small_strain(x, y, z);
-            }
-            let stresses = self.law.scaled_stresses(first, &strains, volumes);
-            for k in 0..FOUR {
-                columns[k] = symmetric_columns(stresses[k]);
-            }
-        }
-        for k in 0..FOUR {
-            let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            add_cell_forces(&mut self.scratch.force, local, gradients, columns[k]);
-        }
-    }
-
-    /// Replaces displacement gradients of four cells by their stresses times volumes on the nodes.
-    #[inline(always)]
-    fn turned_stresses(&mut self, first: usize, volumes: &[f64; FOUR], columns: &mut [[Lane; 3]; FOUR]) {
-        let gradients = FourGradients::new(columns);
-        let determinants = gradients.determinants();
-        for k in 0..FOUR {
-            if determinants[k] <= 0.0 {
-                self.note_inverted(first + k, volumes[k]);
-            }
-        }
-        if let Some((strains, turns)) = gradients.strains_and_turns(&determinants) {
-            let stresses = self.law.scaled_stresses(first, &strains, volumes);
-            *columns = turns.stress_columns(&stresses);
-            return;
-        }
-        let (mut strains, mut turns) = ([Sym3::ZERO; FOUR], [Turn::default(); FOUR]);
+        self.gather::<N>(local, gradients, &mut columns);
+        let mut strains = [Sym3::ZERO; FOUR];
         for k in 0..FOUR {
             let [x, y, z] = columns[k];
-            let (strain, m, n) = strain_and_turn(&columns_to_matrix(x, y, z));
-            (strains[k], turns[k]) = (strain, Turn { m, n });
+            strains[k] = small_strain(x, y, z);
         }
         let stresses = self.law.scaled_stresses(first, &strains, volumes);
         for k in 0..FOUR {
-            columns[k] = Self::stress_columns(stresses[k], strains[k], &turns[k]);
+            columns[k] = symmetric_columns(stresses[k]);
         }
+        self.scatter::<N>(local, gradients, &columns);
+    }
+
+    /// Replaces displacement gradients of four cells by their stresses times volumes on the nodes; not where one of them is stretched by more than
+    /// little.
+    #[inline(always)]
+    fn turned_stresses(&mut self, first: usize, volumes: &[f64; FOUR], columns: &mut [[Lane; 3]; FOUR]) -> bool {
+        let gradients = FourGradients::new(columns);
+        let Some((strains, turns)) = gradients.strains_and_turns() else { return false };
+        let stresses = self.law.scaled_stresses(first, &strains, volumes);
+        *columns = turns.stress_columns(&stresses);
+        true
     }
 
     /// Notes the first cell that is turned inside out while it carries.
@@ -415,13 +351,13 @@ struct Turn {
 widest! {
     /// The small-strain kernel in the widest instruction set of the machine.
     pub(crate) fn forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) -> Option<usize>
-        = forces_by_runs::<false, L>;
+        = forces_by_runs::<false, L>, otherwise forces_by_cells::<false, L>;
 }
 
 widest! {
     /// The kernel of cells that turn; returns the first that is turned inside out while it still carries.
     pub(crate) fn corotational_forces<L: CellLaw>(cells: &Cells, scratch: &mut Scratch, law: &mut L) -> Option<usize>
-        = forces_by_runs::<true, L>;
+        = forces_by_runs::<true, L>, otherwise forces_by_cells::<true, L>;
 }
 
 /// What viscous cells do beside elastic ones.
@@ -499,6 +435,7 @@ mod tests {
 
     use super::*;
     use crate::body::{Body, ElementKind};
+    use crate::cells::law::ElasticCells;
     use crate::cells::viscosity::Viscosity;
     use crate::solid::Solid;
 
@@ -538,8 +475,8 @@ mod tests {
                         let run = match (fastest, corotational) {
                             (true, false) => forces,
                             (true, true) => corotational_forces,
-                            (false, false) => forces_by_runs::<false, _>,
-                            (false, true) => forces_by_runs::<true, _>,
+                            (false, false) => forces_by_cells::<false, _>,
+                            (false, true) => forces_by_cells::<true, _>,
                         };
                         run(cells, scratch, &mut law);
                     }

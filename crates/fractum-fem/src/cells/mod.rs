@@ -3,5 +3,6 @@
 pub(crate) mod block;
 pub(crate) mod cell;
 pub(crate) mod kernel;
+pub(crate) mod law;
 pub(crate) mod thermal_strain;
 pub(crate) mod viscosity;

@@ -5,7 +5,8 @@ use fractum_math::{FOUR, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
 use crate::cells::block::Cells;
-use crate::cells::kernel::{self, CellLaw};
+use crate::cells::kernel;
+use crate::cells::law::CellLaw;
 use crate::damage::edge::EdgeField;
 
 /// The step that led to the present displacements.

@@ -9,7 +9,8 @@ use rayon::prelude::*;
 
 use crate::body::ElementKind;
 use crate::cells::block::{BLOCK_NODES, Cells, Run};
-use crate::cells::kernel::{CellLaw, add_cell_forces, gradient_columns, small_strain, symmetric_columns};
+use crate::cells::kernel::{add_cell_forces, gradient_columns, small_strain, symmetric_columns};
+use crate::cells::law::CellLaw;
 use crate::damage::edge::EdgeField;
 use crate::damage::rate::RateInStep;
 use crate::element::cut_modes;

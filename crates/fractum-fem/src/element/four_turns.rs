@@ -42,16 +42,15 @@ impl FourGradients {
 
     /// Determinants of F: not positive where a cell is turned inside out.
     #[inline(always)]
-    pub(crate) fn determinants(&self) -> [f64; FOUR] {
+    fn determinants(&self) -> [f64; FOUR] {
         let [[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]] = self.deformation();
         (xx * (yy * zz - zy * yz) - xy * (yx * zz - zx * yz) + xz * (yx * zy - zx * yy)).0
     }
 
-    /// Strain and turn of the four cells; none where one of them needs more than the series for small stretches.
-    ///
-    /// - `determinants`: those of F
+    /// Strain and turn of the four cells; none where one of them needs more than the series for small stretches, or is turned inside out.
     #[inline(always)]
-    pub(crate) fn strains_and_turns(&self, determinants: &[f64; FOUR]) -> Option<([Sym3; FOUR], FourTurns)> {
+    pub(crate) fn strains_and_turns(&self) -> Option<([Sym3; FOUR], FourTurns)> {
+        let determinants = self.determinants();
         let square = stretch_square(&self.0);
         let [xx, yy, zz, xy, yz, zx] = square;
         let size = xx * xx + yy * yy + zz * zz + Lane::splat(2.0) * (xy * xy + yz * yz + zx * zx);
@@ -122,7 +121,7 @@ mod tests {
             let column = |h: &Mat3, c: usize| Lane([h[(0, c)], h[(1, c)], h[(2, c)], 0.0]);
             let four = FourGradients::new(&gradients.map(|h| [0, 1, 2].map(|c| column(&h, c))));
             let determinants = four.determinants();
-            let together = four.strains_and_turns(&determinants);
+            let together = four.strains_and_turns();
             let alone = gradients.map(|h| strain_and_turn(&h));
             // The series of one that is stretched too far has no tensor n.
             prop_assert_eq!(together.is_some(), alone.iter().all(|(_, _, n)| *n != Sym3::ZERO));

@@ -6,7 +6,8 @@ use crate::body::Kinematics;
 use crate::body::elasticity::{Elasticity, Linear};
 use crate::cells::block::{BLOCK_NODES, Cells, Scratch};
 use crate::cells::cell::Bundle;
-use crate::cells::kernel::{self, BornCells, ElasticCells, ExpandingCells, Viscous};
+use crate::cells::kernel::{self, Viscous};
+use crate::cells::law::{BornCells, CellLaw, ElasticCells, ExpandingCells};
 use crate::cells::viscosity::ViscousCells;
 use crate::damage::edge::EdgeField;
 use crate::damage::edges_in_step::{Advance, BeddedEdges, EdgesInStep, FourEdgesInStep, RubbingEdges};
@@ -274,7 +275,7 @@ fn run_elastic<L: Linear>(
 
 /// Runs the cells with the law, beyond their thermal strains and those at which they came in where they have some; see [`run_law`]. Returns the work
 /// of the present change of temperatures too [J].
-fn run<L: kernel::CellLaw>(
+fn run<L: CellLaw>(
     model: &BodyModel,
     cells: &Cells,
     scratch: &mut Scratch,
@@ -294,7 +295,7 @@ fn run<L: kernel::CellLaw>(
 }
 
 /// Runs the cheapest kernel that the body allows; returns the viscous power [W] and a cell that is turned inside out.
-fn run_law<L: kernel::CellLaw>(
+fn run_law<L: CellLaw>(
     model: &BodyModel,
     cells: &Cells,
     scratch: &mut Scratch,
