@@ -20,7 +20,7 @@ def main(folder):
     print(f"{results.summary['status']}; peak {history['load'][peak]:.4g} {results.units['load']}", end=" ")
     print(f"at t = {history['time'][peak]:.3e} s; damage has taken {results.summary['energy']['damage']:.3g} J")
 
-    solid = results.fields()["solid"]  # the last frame; fields(time) takes the nearest one
+    solid = results.fields()["solid"]  # the last frame; fields(time) takes another
     kind, elements = solid.cells[0]
     middle = solid.points[elements].mean(axis=1)
     damaged = middle[solid.cell_data["damage"] > 0.5, 0]

@@ -9,20 +9,29 @@ Everything is in SI units. `docs/python.md` of the repository has a recipe for e
 
 from ._core import __version__
 from .errors import CaseError, FractumError, MachineError, StoppedError
-from .results import Frame, Results
-from .runs import run, study, sweep
+from .results import Frame, Frames, Parts, Probe, Results
+from .runs import Check, Key, check, explain, run, study, sweep
 from .simulation import Simulation
+from .tables import with_units
 
 __all__ = [
     "CaseError",
+    "Check",
     "FractumError",
     "Frame",
+    "Frames",
+    "Key",
     "MachineError",
+    "Parts",
+    "Probe",
     "Results",
     "Simulation",
     "StoppedError",
     "__version__",
+    "check",
+    "explain",
     "run",
     "study",
     "sweep",
+    "with_units",
 ]

@@ -1,6 +1,9 @@
 """What may go wrong, with the text of the program."""
 
+from __future__ import annotations
+
 import json
+from typing import Any
 
 
 class FractumError(Exception):
@@ -10,9 +13,9 @@ class FractumError(Exception):
     `expected` and `remedy`. It is empty for other failures.
     """
 
-    def __init__(self, text, diagnostics="[]"):
+    def __init__(self, text: str, diagnostics: str = "[]") -> None:
         super().__init__(text)
-        self.diagnostics = json.loads(diagnostics)
+        self.diagnostics: list[dict[str, Any]] = json.loads(diagnostics)
 
 
 class CaseError(FractumError, ValueError):

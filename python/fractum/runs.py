@@ -1,18 +1,28 @@
-"""Whole runs: one, or one for each combination of values."""
+"""Whole runs: one, or one for each combination of values; what a run would do, and what the keys of a case mean."""
 
+from __future__ import annotations
+
+import html
 import json
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from . import _core, tables
 from .results import Results
 
+#: Where a file or a folder is.
+Place = str | os.PathLike[str]
 
-def overrides(values):
+
+def overrides(values: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     """Keys and values as `--set` takes them."""
     return [(str(name), _written(value)) for name, value in (values or {}).items()]
 
 
-def _written(value):
+def _written(value: Any) -> str:
     """A value as text of a case file; texts such as "2 mm/s" stay as they are."""
     if isinstance(value, str):
         return value
@@ -23,7 +33,7 @@ def _written(value):
     return _inner(value)
 
 
-def _inner(value):
+def _inner(value: Any) -> str:
     """A value within another one, where a text needs its quotes."""
     if isinstance(value, dict):
         return _written(value)
@@ -32,7 +42,16 @@ def _inner(value):
     return json.dumps(value)
 
 
-def run(case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False, strict=False):
+def run(
+    case: Place,
+    set: Mapping[str, Any] | None = None,
+    output: Place | None = None,
+    threads: int | None = None,
+    resume: bool = False,
+    quiet: bool = True,
+    overwrite: bool = False,
+    strict: bool = False,
+) -> Results:
     """Runs a case to its end, as `fractum run` does; its `Results`.
 
     - `set`: parameters or dotted keys with their values: `{"velocity": "2 mm/s", "solver.safety": 0.5}`
@@ -52,7 +71,70 @@ def run(case, set=None, output=None, threads=None, resume=False, quiet=True, ove
     return Results(folder)
 
 
-def study(case, vary=None, workers=1, set=None, output=None, threads=1, overwrite=False, compare=()):
+@dataclass(frozen=True, repr=False)
+class Check:
+    """What `fractum check` says of a case: its plan, and what is doubtful, as `Results.warnings` has it."""
+
+    plan: str
+    warnings: list[dict[str, str]]
+
+    def __repr__(self) -> str:
+        told = [f"{w['where']}: {w['text']}" + (f"; {w['remedy']}" if w["remedy"] else "") for w in self.warnings]
+        return "\n".join([self.plan, *(f"warning: {line}" for line in told)])
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(repr(self))}</pre>"
+
+
+def check(case: Place, set: Mapping[str, Any] | None = None) -> Check:
+    """What a run of the case would do, and what is doubtful, as `fractum check` says it; nothing is written.
+
+    Raises `CaseError` where the case is wrong.
+    """
+    plan, warnings = _core.check(case, overrides(set))
+    return Check(plan, [dict(zip(("code", "text", "where", "remedy"), warning)) for warning in warnings])
+
+
+@dataclass(frozen=True, repr=False)
+class Key:
+    """A key of the case file: its `path`, `meaning`, `type`, `default`, and the keys right `below` it."""
+
+    path: str
+    meaning: str
+    type: str
+    default: str
+    below: tuple[Key, ...] = ()
+
+    def __repr__(self) -> str:
+        default = f", default: {self.default}" if self.default else ""
+        text = f"{self.path}\n  {self.meaning}\n  type: {self.type}{default}"
+        return "\n\n".join([text, *map(repr, self.below)])
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(repr(self))}</pre>"
+
+
+def explain(key: str | None = None) -> Any:
+    """What a key of the case file means, with the keys right below it; a table of all keys without a name.
+
+    Raises `CaseError` with the nearest key where there is none of that name.
+    """
+    found = [Key(*row) for row in _core.explain(key)]
+    if key is None:
+        return tables.table({name: [getattr(row, name) for row in found] for name in ("path", "meaning", "type", "default")})
+    return Key(found[0].path, found[0].meaning, found[0].type, found[0].default, tuple(found[1:]))
+
+
+def study(
+    case: Place,
+    vary: Mapping[str, Sequence[Any]] | None = None,
+    workers: int = 1,
+    set: Mapping[str, Any] | None = None,
+    output: Place | None = None,
+    threads: int | None = 1,
+    overwrite: bool = False,
+    compare: Iterable[str] = (),
+) -> Any:
     """Runs a case with every combination of values, as `fractum study` does; a table with a row for each run.
 
     - `case`: a case file, a study file or a list of runs

@@ -1,12 +1,17 @@
 """A simulation that is driven from Python."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from . import _core
 from .results import Results
-from .runs import overrides
+from .runs import Place, overrides
+from .tables import nearest
 
 _NO_LIMIT = 2**63 - 1
 
@@ -14,21 +19,21 @@ _NO_LIMIT = 2**63 - 1
 class _State:
     """Arrays over one kind of points; each is read when it is asked for, and is a copy that cannot be written to."""
 
-    _arrays = {}
+    _arrays: dict[str, tuple[Any, ...]] = {}
 
-    def __init__(self, read):
+    def __init__(self, read: Callable[[str], bytes]) -> None:
         self._read = read
 
-    def __getattr__(self, name):
+    def __getattr__(self, name: str) -> np.ndarray:
         if name not in self._arrays:
-            raise AttributeError(f"{type(self).__name__} has no array {name!r}; arrays: {', '.join(self._arrays)}")
+            raise AttributeError(f"{type(self).__name__} has no array {name!r}; {nearest(name, self._arrays)}")
         return _array(self._read(name), *self._arrays[name])
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._arrays]
 
 
-def _array(content, columns, kind="f8"):
+def _array(content: bytes, columns: int, kind: str = "f8") -> np.ndarray:
     values = np.frombuffer(content, dtype=kind)
     return values if columns == 1 else values.reshape(-1, columns)
 
@@ -94,13 +99,20 @@ class Body(_State):
 
     _arrays = {"damage": (1,), "stress": (6,), "alive": (1, "?")}
 
-    def __init__(self, name, connectivity, read):
+    def __init__(self, name: str, connectivity: np.ndarray, read: Callable[[str], bytes]) -> None:
         super().__init__(read)
         self.name = name
         self.connectivity = connectivity
 
 
-def _shared(function, count):
+class Bodies(dict[str, Body]):
+    """Solid bodies by name."""
+
+    def __missing__(self, name: str) -> Body:
+        raise KeyError(f"no solid body {name!r}; {nearest(name, self)}")
+
+
+def _shared(function: Callable[..., Any], count: int) -> tuple[Callable[[float], None], list[np.ndarray]]:
     """What the simulation calls with the time [s] for a load, and the arrays that it fills before and reads after."""
     arrays = [np.empty((count, 3)) for _ in range(3)]
     seen = [array.view() for array in arrays[:2]]
@@ -108,7 +120,7 @@ def _shared(function, count):
         array.flags.writeable = False
     forces = arrays[2]
 
-    def call(time):
+    def call(time: float) -> None:
         # A single force acts on every point.
         forces[...] = function(time, *seen)
 
@@ -125,93 +137,109 @@ class Simulation:
     >>> simulation.results.history
     """
 
-    def __init__(self, case, set=None, output=None, threads=None, resume=False, quiet=True, overwrite=False, strict=False):
+    def __init__(
+        self,
+        case: Place,
+        set: Mapping[str, Any] | None = None,
+        output: Place | None = None,
+        threads: int | None = None,
+        resume: bool = False,
+        quiet: bool = True,
+        overwrite: bool = False,
+        strict: bool = False,
+    ) -> None:
         self._core = _core.Core(case, overrides(set), output, threads, (resume, overwrite), (quiet, strict))
-        self.results = None
+        self.results: Results | None = None
         self.nodes = Nodes(self._core.nodes)
         self.particles = Particles(self._core.particles)
         self.discrete_elements = DiscreteElements(self._core.discrete)
 
     @property
-    def bodies(self):
+    def bodies(self) -> Bodies:
         """The solid bodies by name."""
-        found = {}
+        found = Bodies()
         for index, (name, corners, nodes) in enumerate(self._core.bodies()):
             connectivity = _array(nodes, corners, "u4")
             found[name] = Body(name, connectivity, lambda array, index=index: self._core.elements(index, array))
         return found
 
     @property
-    def time(self):
+    def time(self) -> float:
         """Present time [s]; the load factor of a static run."""
         return self._core.progress()[0]
 
     @property
-    def dt(self):
+    def dt(self) -> float:
         """The next time step [s]."""
         return self._core.progress()[1]
 
     @property
-    def steps(self):
+    def steps(self) -> int:
         """Steps done."""
         return self._core.progress()[2]
 
     @property
-    def is_over(self):
+    def is_over(self) -> bool:
         """Whether the run has ended: its end is reached, `stop()` was called, it was interrupted, or a step failed."""
         return self._core.progress()[3]
 
     @property
-    def status(self):
+    def status(self) -> str | None:
         """How the run ended: `"completed"`, `"interrupted"` or `"stopped"` (a step failed); `None` before that."""
         return self._core.progress()[4]
 
     @property
-    def folder(self):
+    def folder(self) -> Path:
         """Results folder."""
         return Path(self._core.progress()[5])
 
     @property
-    def energies(self):
+    def energies(self) -> dict[str, float]:
         """The energy ledger at the last row of the history [J]."""
         return self._core.ledger()[0]
 
     @property
-    def counts(self):
+    def counts(self) -> dict[str, int]:
         """Numbers of nodes, elements, removed elements, damaged and broken edges, particles, contacts and bonds."""
         return self._core.ledger()[1]
 
     @property
-    def state_hash(self):
+    def state_hash(self) -> str:
         """Hash of everything that changes, as `summary.json` has it for the end of a run."""
         return self._core.state_hash()
 
     @property
-    def warnings(self):
+    def warnings(self) -> list[dict[str, str]]:
         """All warnings so far, as those of `Results`."""
         names = ("code", "text", "where", "remedy")
         return [dict(zip(names, warning)) for warning in self._core.warnings()]
 
     @property
-    def probes(self):
+    def probes(self) -> dict[str, str]:
         """Names of the probes that are columns of the history, with their units."""
         return dict(self._core.probes())
 
-    def probe(self, name):
+    def probe(self, name: str) -> tuple[np.ndarray, np.ndarray]:
         """Times [s] and values of a probe so far."""
         times, values = self._core.probe(name)
         return _array(times, 1), _array(values, 1)
 
     @property
-    def groups(self):
+    def groups(self) -> list[str]:
         """Names of the groups of the mesh."""
         return self._core.groups()
 
-    def group(self, name):
+    def group(self, name: str) -> np.ndarray:
         """Nodes of a group of the mesh: indices into the arrays of `nodes`."""
         return _array(self._core.group(name), 1, "u4")
 
-    def add_load(self, function, group=None, nodes=None, particles=None):
+    def add_load(
+        self,
+        function: Callable[[float, np.ndarray, np.ndarray], Any],
+        group: str | None = None,
+        nodes: Sequence[int] | np.ndarray | None = None,
+        particles: Sequence[int] | np.ndarray | None = None,
+    ) -> None:
         """Adds a load that a function gives.
 
         Before every step `function(time, position, velocity)` is called with the time [s] and the arrays (n, 3) of the
@@ -238,11 +266,11 @@ class Simulation:
         points = np.ascontiguousarray(points, dtype="u4")
         self._core.add_load(particles is None, points.tobytes(), *_shared(function, len(points)))
 
-    def step(self, count=1):
+    def step(self, count: int = 1) -> bool:
         """Steps `count` times; whether the run goes on."""
         return self._advance(count, float("inf"))
 
-    def run(self, until=float("inf"), stop=None, every=1):
+    def run(self, until: float = float("inf"), stop: Callable[[Simulation], bool] | None = None, every: int = 1) -> None:
         """Steps to the end of the case, to a time, or until `stop(simulation)` is true.
 
         - `until`: time [s] at which the stepping ends, and can go on
@@ -250,7 +278,7 @@ class Simulation:
         """
         self._advance(_NO_LIMIT, until, stop and (lambda: stop(self)), every)
 
-    def _advance(self, count, until, stop=None, every=1):
+    def _advance(self, count: int, until: float, stop: Callable[[], bool] | None = None, every: int = 1) -> bool:
         """Whether the run goes on after `count` steps or the time `until`."""
         goes_on = self._core.step(count, until, stop, every)
         if not goes_on and self.status == "interrupted":
@@ -258,11 +286,11 @@ class Simulation:
             raise KeyboardInterrupt(f"state saved in {self.folder}")
         return goes_on
 
-    def stop(self):
+    def stop(self) -> None:
         """Ends the run as if its end were reached."""
         self._core.stop()
 
-    def finish(self):
+    def finish(self) -> Results | None:
         """Writes the results and returns them; a run that is not over ends as if interrupted, with its state saved.
 
         Raises `StoppedError` where a step failed, with the results written all the same.
@@ -276,10 +304,15 @@ class Simulation:
                     self.results = Results(folder)
         return self.results
 
-    def __enter__(self):
+    def __repr__(self) -> str:
+        if self.results is not None:
+            return f"<Simulation that has ended: {self.results!r}>"
+        return f"<Simulation at {self.time:.6g} s after {self.steps} steps of {self.dt:.4g} s: {self.status or 'under way'}>"
+
+    def __enter__(self) -> Simulation:
         return self
 
-    def __exit__(self, kind, error, trace):
+    def __exit__(self, kind: type[BaseException] | None, error: Any, trace: Any) -> bool:
         if kind is None or not issubclass(kind, Exception):
             self.finish()
         return False

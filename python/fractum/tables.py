@@ -1,7 +1,11 @@
 """Tables: pandas where it is installed, else structured numpy arrays."""
 
 import csv
+import difflib
 import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,10 +17,15 @@ except ImportError:
 _HEADER = re.compile(r"^(.*?) \[(.*)\]$")
 
 
-def table(columns):
-    """A table of columns: a `pandas.DataFrame`, or a structured array with the same names."""
+def table(columns: dict[str, Any], units: dict[str, str] | None = None) -> Any:
+    """A table of columns: a `pandas.DataFrame`, or a structured array with the same names.
+
+    - `units`: unit of each column, kept in `attrs["units"]` of a data frame
+    """
     if pandas is not None:
-        return pandas.DataFrame(columns)
+        frame = pandas.DataFrame(columns)
+        frame.attrs["units"] = dict(units or {})
+        return frame
     arrays = {name: np.asarray(values) for name, values in columns.items()}
     rows = max((len(array) for array in arrays.values()), default=0)
     made = np.empty(rows, dtype=[(name, _kind(array)) for name, array in arrays.items()])
@@ -25,12 +34,25 @@ def table(columns):
     return made
 
 
-def _kind(array):
+def with_units(table: Any) -> Any:
+    """A data frame whose column heads name the units: `load [N]`. `table` is one of `Results`, which knows them."""
+    units = getattr(table, "attrs", {}).get("units", {})
+    return table.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit})
+
+
+def nearest(name: str, names: Iterable[str]) -> str:
+    """What is said of a name that there is not: the nearest one, or all."""
+    names = list(names)
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(map(str, names)) or 'none'}"
+
+
+def _kind(array: np.ndarray) -> Any:
     """Texts of any length are objects in a structured array."""
     return object if array.dtype.kind in "US" else array.dtype
 
 
-def read(path):
+def read(path: Path) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """The columns of a CSV file, and the units that its header gives in brackets."""
     with open(path, newline="", encoding="utf-8") as file:
         lines = list(csv.reader(file))
@@ -46,7 +68,7 @@ def read(path):
     return columns, units
 
 
-def _values(cells):
+def _values(cells: list[str]) -> np.ndarray:
     """Whole numbers, numbers or texts, whatever all cells are."""
     for kind in (int, float):
         try:

@@ -1,10 +1,15 @@
 """Reader of the VTK files that the program writes (XML with raw appended arrays)."""
 
+from __future__ import annotations
+
 import xml.etree.ElementTree as ElementTree
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+
+from .tables import nearest
 
 _KINDS = {
     "Float64": "f8",
@@ -29,27 +34,42 @@ class Frame:
     - `points`: array (n, 3) [m], without displacement
     - `cells`: list of pairs of a name (`"tetra"`, `"triangle"`, `"vertex"`, `"line"`) and an array of point numbers
     - `point_data`, `cell_data`, `field_data`: dictionaries of arrays
+    - `units`: unit of each array that has one
     - `path`: the file; `time` [s]
     """
 
-    def __init__(self, path):
+    time: float | None
+    points: np.ndarray
+    cells: list[tuple[str, np.ndarray]]
+    point_data: Arrays
+    cell_data: Arrays
+    field_data: Arrays
+    units: dict[str, str]
+
+    def __init__(self, path: str | Path) -> None:
         self.path = path
         if str(path).endswith((".pvtu", ".pvtp")):
             self._read_pieces()
         else:
             self._read()
 
-    def _read_pieces(self):
+    def __repr__(self) -> str:
+        cells = ", ".join(f"{len(nodes)} {kind}" for kind, nodes in self.cells)
+        at = "" if self.time is None else f" at {self.time:.4g} s"
+        data = [f"{name} on {where}" for where, arrays in (("points", self.point_data), ("cells", self.cell_data)) for name in arrays]
+        return f"<Frame{at}: {len(self.points)} points, {cells or 'no cells'}; {', '.join(data) or 'no arrays'}>"
+
+    def _read_pieces(self) -> None:
         """The pieces that a file lists, put together by the numbers of their points."""
         root = ElementTree.parse(self.path).getroot()
         pieces = [Frame(Path(self.path).parent / tag.get("Source")) for tag in root[0].iter("Piece")]
         numbers = [piece.point_data.pop("GlobalNodeId") for piece in pieces]
-        self.time, self.field_data = pieces[0].time, pieces[0].field_data
+        self.time, self.field_data, self.units = pieces[0].time, pieces[0].field_data, pieces[0].units
         self.points = _put([piece.points for piece in pieces], numbers)
         names = pieces[0].point_data
-        self.point_data = {name: _put([piece.point_data[name] for piece in pieces], numbers) for name in names}
+        self.point_data = Arrays({name: _put([piece.point_data[name] for piece in pieces], numbers) for name in names})
         names = pieces[0].cell_data
-        self.cell_data = {name: np.concatenate([piece.cell_data[name] for piece in pieces]) for name in names}
+        self.cell_data = Arrays({name: np.concatenate([piece.cell_data[name] for piece in pieces]) for name in names})
         self.cells = []
         for piece, own in zip(pieces, numbers):
             for kind, nodes in piece.cells:
@@ -57,7 +77,7 @@ class Frame:
                 before = [self.cells.pop()[1]] if same else []
                 self.cells.append((kind, np.concatenate([*before, own[nodes]])))
 
-    def _read(self):
+    def _read(self) -> None:
         path = self.path
         with open(path, "rb") as file:
             content = file.read()
@@ -66,7 +86,8 @@ class Frame:
             raise ValueError(f"{path}: no raw appended data; expected a VTK file of fractum")
         data = memoryview(rest)[rest.index(b"_") + 1 :]
         root = ElementTree.fromstring(head + b"</VTKFile>")
-        arrays = _Arrays(root, data)
+        arrays = _Appended(root, data)
+        self.units = arrays.units
         grid = root[0]
         piece = grid.find("Piece")
         self.field_data = arrays.of(grid.find("FieldData"))
@@ -86,7 +107,7 @@ class Frame:
                     kinds = np.full(len(cells["offsets"]), kind)
                     self.cells += _blocks(cells["connectivity"], cells["offsets"], kinds)
 
-    def to_meshio(self):
+    def to_meshio(self) -> Any:
         """As a `meshio.Mesh`."""
         import meshio
 
@@ -94,7 +115,7 @@ class Frame:
         cell_data = {name: np.split(values, ends) for name, values in self.cell_data.items()}
         return meshio.Mesh(self.points, self.cells, point_data=self.point_data, cell_data=cell_data)
 
-    def to_pyvista(self):
+    def to_pyvista(self) -> Any:
         """As a data set of PyVista."""
         import pyvista
 
@@ -107,7 +128,14 @@ class Frame:
         return cloud
 
 
-def _put(parts, numbers):
+class Arrays(dict[str, np.ndarray]):
+    """Arrays by name."""
+
+    def __missing__(self, name: str) -> np.ndarray:
+        raise KeyError(f"no array {name!r}; {nearest(name, self)}")
+
+
+def _put(parts: list[np.ndarray], numbers: list[np.ndarray]) -> np.ndarray:
     """Rows of pieces at their places in the whole."""
     count = max((int(own.max()) + 1 for own in numbers if len(own)), default=0)
     whole = np.zeros((count, *parts[0].shape[1:]), dtype=parts[0].dtype)
@@ -116,28 +144,33 @@ def _put(parts, numbers):
     return whole
 
 
-class _Arrays:
-    """The arrays of a file."""
+class _Appended:
+    """The arrays of a file, and the units that it names."""
 
-    def __init__(self, root, data):
+    def __init__(self, root: ElementTree.Element, data: memoryview) -> None:
+        self.units: dict[str, str] = {}
         self.data = data
         self.order = "<" if root.get("byte_order") == "LittleEndian" else ">"
         self.compressed = root.get("compressor") is not None
 
-    def of(self, section):
+    def of(self, section: ElementTree.Element | None) -> Arrays:
         """The arrays of a section, by name."""
-        found = {}
+        found = Arrays()
         for tag in () if section is None else section.iter("DataArray"):
             kind = np.dtype(self.order + _KINDS[tag.get("type")])
             values = np.frombuffer(self._bytes(int(tag.get("offset"))), dtype=kind)
             components = int(tag.get("NumberOfComponents", 1))
-            found[tag.get("Name")] = values.reshape(-1, components) if components > 1 else values
+            name = tag.get("Name")
+            found[name] = values.reshape(-1, components) if components > 1 else values
+            unit = next((key.text for key in tag.iter("InformationKey") if key.get("name") == "UNITS_LABEL"), None)
+            if unit:
+                self.units[name] = unit
         return found
 
-    def _numbers(self, at, count):
+    def _numbers(self, at: int, count: int) -> list[int]:
         return np.frombuffer(self.data, dtype=self.order + "u8", count=count, offset=at).tolist()
 
-    def _bytes(self, at):
+    def _bytes(self, at: int) -> bytes:
         if not self.compressed:
             (length,) = self._numbers(at, 1)
             return bytes(self.data[at + 8 : at + 8 + length])
@@ -151,7 +184,7 @@ class _Arrays:
         return b"".join(parts)
 
 
-def _blocks(nodes, ends, kinds):
+def _blocks(nodes: np.ndarray, ends: np.ndarray, kinds: np.ndarray) -> list[tuple[str, np.ndarray]]:
     """Runs of cells of one kind and size."""
     sizes = np.diff(ends, prepend=0)
     breaks = np.flatnonzero((np.diff(kinds) != 0) | (np.diff(sizes) != 0)) + 1

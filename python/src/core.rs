@@ -64,6 +64,11 @@ impl Numbering {
     }
 }
 
+/// Code, text, place and remedy of a warning.
+pub(crate) fn parts(warning: &Warning) -> [String; 4] {
+    [warning.code.name(), &warning.text, &warning.place, &warning.remedy].map(str::to_owned)
+}
+
 /// A value of everything in a scene that has places and velocities.
 fn no_array(py: Python<'_>, name: &str) -> PyErr {
     wrong(py, format!("no array is called \"{name}\""))
@@ -233,9 +238,6 @@ impl Core {
 
     /// All warnings so far: code, text, place and remedy of each.
     fn warnings(&self, py: Python<'_>) -> PyResult<Vec<[String; 4]>> {
-        let parts = |warning: &Warning| {
-            [warning.code.name(), &warning.text, &warning.place, &warning.remedy].map(str::to_owned)
-        };
         self.with(py, |simulation| Ok(simulation.warnings().iter().map(parts).collect()))
     }
 

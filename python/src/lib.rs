@@ -22,8 +22,8 @@ use fractum_output::study::run::End;
 use fractum_output::summary::Status;
 use pyo3::prelude::*;
 
-use crate::core::Core;
-use crate::errors::raise;
+use crate::core::{Core, parts};
+use crate::errors::{raise, wrong};
 use crate::watch::{pool, watch};
 
 /// Runs a case to its end; its results folder, and whether it was interrupted.
@@ -55,6 +55,34 @@ fn run(
     let host = pool(py, Some(1))?;
     let outcome = watch(py, &host, || fractum::run(&case, &options))?.map_err(|failure| raise(py, &failure))?;
     Ok((outcome.folder, outcome.summary.status == Status::Interrupted))
+}
+
+/// The plan of a case and what is doubtful, as `fractum check` says them: code, text, place and remedy of each warning.
+#[pyfunction]
+fn check(py: Python<'_>, case: PathBuf, set: Vec<(String, String)>) -> PyResult<(String, Vec<[String; 4]>)> {
+    let host = pool(py, Some(1))?;
+    let (plan, doubts) = watch(py, &host, || fractum::plan::checked(&case, &set, &cache_of_user()))?
+        .map_err(|failure| raise(py, &failure))?;
+    let warnings = doubts.iter().filter_map(fractum_case::Diagnostic::to_warning);
+    Ok((plan.to_string(), warnings.map(|warning| parts(&warning)).collect()))
+}
+
+/// Path, meaning, type and default of a key of the case file.
+type Key = (&'static str, &'static str, String, &'static str);
+
+/// The keys of the case file: one with those right below it, or all of them without a name.
+#[pyfunction]
+#[pyo3(signature = (key=None))]
+fn explain(py: Python<'_>, key: Option<&str>) -> PyResult<Vec<Key>> {
+    let told = |doc: &fractum_case::KeyDoc| (doc.path, doc.doc, doc.kind.label(), doc.default);
+    let Some(key) = key else { return Ok(fractum_case::keys().iter().map(told).collect()) };
+    let found = fractum_case::explain(key).map_err(|near| match near {
+        Some(near) => wrong(py, format!("no key \"{key}\"; did you mean \"{near}\"?")),
+        None => wrong(py, format!("no key \"{key}\"; fractum.explain() lists all of them")),
+    })?;
+    let below = format!("{}.", found.path);
+    let is_below = |doc: &&fractum_case::KeyDoc| doc.path.strip_prefix(&below).is_some_and(|name| !name.contains('.'));
+    Ok(std::iter::once(found).chain(fractum_case::keys().iter().filter(is_below)).map(told).collect())
 }
 
 /// Keys with their values: what all runs set, and what is varied.
@@ -120,6 +148,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<Core>()?;
     module.add_function(wrap_pyfunction!(run, module)?)?;
     module.add_function(wrap_pyfunction!(study, module)?)?;
+    module.add_function(wrap_pyfunction!(check, module)?)?;
+    module.add_function(wrap_pyfunction!(explain, module)?)?;
     module.add_function(wrap_pyfunction!(interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(clear_interrupt, module)?)
 }

@@ -1,4 +1,7 @@
-"""The recipes run as they stand."""
+"""The recipes and notebooks run as they stand."""
+
+import ast
+import json
 
 import numpy as np
 import pytest
@@ -8,6 +11,7 @@ import moving_load
 import read_results
 import stop_at_crack
 import sweep_strength
+from conftest import ROOT
 
 
 def test_moving_load(tmp_path):
@@ -37,3 +41,26 @@ def test_read_results(tmp_path, capsys):
 def test_load_cost(tmp_path):
     found = load_cost.main(tmp_path, cells=(4, 4, 4), steps=5, rounds=1)
     assert len(found) == 6 and all(np.isfinite(cost) for cost in found.values())
+
+
+@pytest.mark.parametrize("name", ["first_crack", "mesh_study"])
+def test_notebook(name, tmp_path, monkeypatch):
+    """Cell after cell, where the last expression of each is shown."""
+    pytest.importorskip("matplotlib").use("Agg")
+    pytest.importorskip("pandas")
+    monkeypatch.chdir(tmp_path)
+    cells = json.loads((ROOT / "python" / "examples" / f"{name}.ipynb").read_text())["cells"]
+    names, shown = {}, []
+    for cell in (cell for cell in cells if cell["cell_type"] == "code"):
+        tree = ast.parse("".join(cell["source"]))
+        last = tree.body.pop() if isinstance(tree.body[-1], ast.Expr) else None
+        exec(compile(tree, name, "exec"), names)
+        if last is not None:
+            value = eval(compile(ast.Expression(last.value), name, "eval"), names)
+            shown.append(getattr(value, "_repr_html_", value.__repr__)())
+    assert len(shown) >= 2 and all(shown)
+    if name == "first_crack":
+        assert names["results"].probe("load").max == pytest.approx(3e4, rel=0.05)
+    else:
+        # The finest mesh.
+        assert list(names["study"]["tip"])[-1] == pytest.approx(names["theory"], rel=0.02)

@@ -8,6 +8,7 @@ import sys
 import textwrap
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -133,3 +134,62 @@ def test_tables_without_pandas_are_arrays_with_the_same_columns(breaking, tmp_pa
     assert results.units["load"] == "N" and results.units["time"] == "s"
     table = fractum.sweep(breaking, {"strength": ["3 MPa"]}, set=SHORT, output=tmp_path / "runs")
     assert table["status"][0] == "completed" and fractum.Results(table["folder"][0]).probes
+
+
+def test_results_speak_for_themselves(breaking, tmp_path):
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    load = results.probe("load")
+    assert load.unit == "N" and load.max >= load.values.max() and len(load.times) == len(load.values)
+    assert "completed; load up to" in repr(results) and "<td>load</td><td>N</td>" in results._repr_html_()
+    with pytest.raises(KeyError, match="did you mean 'load'"):
+        results.probe("laod")
+    with pytest.raises(KeyError, match="did you mean 'solid'"):
+        results.fields()["solids"]
+    solid = results.fields()["solid"]
+    assert solid.units["stress"] == "Pa" and "tetra" in repr(solid)
+    with pytest.raises(KeyError, match="did you mean 'displacement'"):
+        solid.point_data["displacements"]
+    if tables.pandas:
+        assert results.history.attrs["units"]["load"] == "N" and "load [N]" in fractum.with_units(results.history)
+
+
+def test_a_frame_is_taken_at_its_time_only(breaking, tmp_path):
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    times = [parts.time for parts in results.frames]
+    assert times == pytest.approx([0, 1e-4, 2e-4, 3e-4], abs=2e-6) and len(results.frames[1:]) == 3
+    assert results.fields(1e-4).time == times[1]
+    with pytest.raises(ValueError, match="the nearest are at 0.0001"):
+        results.fields(1.4e-4)
+    assert results.fields(1.4e-4, nearest=True).time == times[1]
+
+
+def test_a_plot_has_the_units_of_its_columns(breaking, tmp_path):
+    pytest.importorskip("matplotlib").use("Agg")
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    axes = results.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("time [s]", "load [N]")
+    assert results.plot("elastic", "damage", ax=axes) is axes and len(axes.lines) == 3
+    with pytest.raises(KeyError, match="did you mean 'elastic'"):
+        results.plot("elastics")
+
+
+def test_check_says_what_a_run_would_do(breaking):
+    found = fractum.check(breaking, set={"solver.end": "1 us"})
+    assert "explicit" in found.plan and repr(found).startswith(found.plan)
+    assert all(set(warning) == {"code", "text", "where", "remedy"} for warning in found.warnings)
+    assert not (breaking.parent / "results").exists()
+    with pytest.raises(fractum.CaseError, match="poisson_ratio"):
+        fractum.check(breaking, set={"materials.concrete.poisson_ratio": 0.7})
+
+
+def test_keys_are_explained():
+    key = fractum.explain("solver.end")
+    assert key.path == "solver.end" and key.type and key.meaning in repr(key)
+    assert "solver.safety" in [below.path for below in fractum.explain("solver").below]
+    with pytest.raises(fractum.CaseError, match='did you mean "solver.end"'):
+        fractum.explain("solver.ends")
+    assert "solver.end" in list(fractum.explain()["path"])
+
+
+def test_the_package_has_types():
+    assert (Path(fractum.__file__).parent / "py.typed").exists()
