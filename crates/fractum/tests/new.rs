@@ -2,7 +2,7 @@
 
 use crate::common::{Workplace, summary};
 
-const NAMES: [&str; 7] = ["plate", "bracket", "brazilian", "beam", "bonded-ucs", "impact", "blast"];
+const NAMES: [&str; 9] = ["plate", "bracket", "brazilian", "beam", "bonded-ucs", "impact", "quench", "shear", "blast"];
 
 #[test]
 fn every_template_is_listed_and_passes_check_without_a_doubt() {
@@ -45,4 +45,7 @@ fn templates_run_to_their_cracks() {
     let strength = largest("bonded-ucs", "strength");
     assert!((90e6..110e6).contains(&strength), "{strength} Pa");
     assert!(largest("impact", "push") > 1e4);
+    // Between the residual strength, tan 30 deg, and cohesion with friction, 0.5 + tan 35 deg.
+    let ratio = largest("shear", "stress_ratio");
+    assert!((1.1..1.201).contains(&ratio), "{ratio}");
 }

@@ -1,7 +1,7 @@
 //! Interfaces between elements in the plan.
 
 use fractum_case::build::process_zone;
-use fractum_output::number::{percent, quantity};
+use fractum_output::number::{percent, quantity, significant};
 use fractum_scene::{InterfaceKind, Scene};
 
 use super::Plan;
@@ -26,8 +26,9 @@ impl Plan {
                     format!("stiffness {normal} across and {shear} along it")
                 }
             };
-            let zone = process_zone(&scene.solid, interfaces, kind)
-                .map_or_else(String::new, |(zone, size)| format!(", process zone some {:.3} faces long", zone / size));
+            let zone = process_zone(&scene.solid, interfaces, kind).map_or_else(String::new, |(zone, size)| {
+                format!(", process zone some {} faces long", significant(zone / size, 3))
+            });
             let area = quantity(area, "m^2");
             self.add("interface", format!("{name}: {faces} faces, {area}, {strength}, {stiffness}{zone}"));
         }

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use fractum_math::Vec3;
 use fractum_math::elementary::{asin, sin_cos};
 use fractum_mesh::generate::{Outline, Piece, fill, mirrored_cells};
-use fractum_mesh::{Group, Mesh, scrambled};
+use fractum_mesh::{Group, Mesh, joined, scrambled};
 
 /// The outline of a rectangle, counter-clockwise from its lowest corner, with the groups of its sides.
 fn rectangle([left, low]: [f64; 2], [right, high]: [f64; 2], [bottom, east, top, west]: [&'static str; 4]) -> Outline {
@@ -64,6 +64,24 @@ pub(super) fn blast() -> Mesh {
     let rock = rectangle([-2.0, -2.0], [2.0, 1.0], ["far", "far", "", "far"]);
     let size = |[x, y]: [f64; 2]| 0.012 + 0.0225 * (x * x + y * y).sqrt();
     fill(&[rock, hole([0.0, 0.0], 0.05, "hole")], "rock", &size, 1)
+}
+
+pub(super) fn quench() -> Mesh {
+    let strip = rectangle([0.0, 0.0], [8.0, 4.0], ["middle", "", "cooled", "left"]);
+    fill(&[strip], "plate", &|_| 0.085, 1)
+}
+
+/// Two halves with nodes of their own where they meet.
+pub(super) fn shear() -> Mesh {
+    let half = |low: f64, sides, name| fill(&[rectangle([0.0, low], [100.0, low + 25.0], sides)], name, &|_| 4.0, 1);
+    let lower = half(0.0, ["bottom", "", "", ""], "lower");
+    let mut upper = half(25.0, ["", "", "top", ""], "upper");
+    let [nodes, elements] = [lower.nodes.len() as u64, (lower.lines.len() + lower.triangles.len()) as u64];
+    upper.node_tags.iter_mut().for_each(|tag| *tag += nodes);
+    upper.line_tags.iter_mut().chain(&mut upper.triangle_tags).for_each(|tag| *tag += elements);
+    let groups = lower.groups.len() as i32;
+    upper.groups.iter_mut().for_each(|group| group.tag += groups);
+    joined(&[lower, upper]).expect("the halves have numbers of their own")
 }
 
 pub(super) fn bracket() -> Mesh {
