@@ -62,5 +62,5 @@ def test_notebook(name, tmp_path, monkeypatch):
     if name == "first_crack":
         assert names["results"].probe("load").max == pytest.approx(3e4, rel=0.05)
     else:
-        # The finest mesh.
+        # The finest mesh with smoothed elements.
         assert list(names["study"]["tip"])[-1] == pytest.approx(names["theory"], rel=0.02)

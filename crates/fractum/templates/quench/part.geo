@@ -1,8 +1,8 @@
-// Strip of a plate, 8 mm along its cooled face and 4 mm deep, in mm: gmsh part.geo -2
-h = 0.085;                                 // size of elements
+// Strip of a plate, 6 mm along its cooled face and 4 mm deep, in mm: gmsh part.geo -2
+h = 0.07;                                 // size of elements
 Point(1) = {0, 0, 0, h};
-Point(2) = {8, 0, 0, h};
-Point(3) = {8, 4, 0, h};
+Point(2) = {6, 0, 0, h};
+Point(3) = {6, 4, 0, h};
 Point(4) = {0, 4, 0, h};
 Line(1) = {1, 2};
 Line(2) = {2, 3};

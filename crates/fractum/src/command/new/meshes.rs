@@ -67,8 +67,8 @@ pub(super) fn blast() -> Mesh {
 }
 
 pub(super) fn quench() -> Mesh {
-    let strip = rectangle([0.0, 0.0], [8.0, 4.0], ["middle", "", "cooled", "left"]);
-    fill(&[strip], "plate", &|_| 0.085, 1)
+    let strip = rectangle([0.0, 0.0], [6.0, 4.0], ["middle", "", "cooled", "left"]);
+    fill(&[strip], "plate", &|_| 0.07, 1)
 }
 
 /// Two halves with nodes of their own where they meet.
