@@ -207,7 +207,6 @@ fn scene(
     pressure: f64,
     [rise, end, damping]: [f64; 3],
 ) -> Scene {
-    let is_plane = body.shape == ElementKind::T3;
     let solid = Solid::new(nodes, vec![body]).unwrap();
     let at = |y: f64| -> Vec<u32> {
         (0..).zip(&solid.reference).filter(|(_, p)| (p.y - y).abs() < 1e-9).map(|(node, _)| node).collect()
@@ -217,7 +216,7 @@ fn scene(
         |facet: &[u32; 3]| pressed(&(facet.map(|n| solid.reference[n as usize]).iter().sum::<Vec3>() / 3.0));
     let facets = surface(&solid).into_iter().filter(is_pressed).collect();
     let value = Arc::new(move |t: f64, _: &Vec3| pressure * (t / rise).min(1.0));
-    let load = Load::Pressure(Pressure { facets, thickness: if is_plane { 1.0 } else { 0.0 }, value });
+    let load = Load::Pressure(Pressure { facets, value });
     let loads = Loads::new(vec![load], solid.reference.len());
     let debris = Debris::new(&solid, vec![ContactParameters::default()]);
     let settings = SceneSettings {

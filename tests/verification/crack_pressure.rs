@@ -48,11 +48,10 @@ fn pulse(t: f64) -> f64 {
 fn blast(cells: [u32; 3], in_cracks: Option<Option<f64>>, end: f64) -> Scene {
     let solid = ring(cells);
     let facets = hole(&solid);
-    let thickness = if solid.is_plane() { THICKNESS } else { 0.0 };
     let value = Arc::new(|t: f64, _: &Vec3| pulse(t));
     let load = match in_cracks {
-        None => Load::Pressure(Pressure { facets, thickness, value }),
-        Some(speed) => Load::CrackPressure(CrackPressure::new(facets, thickness, value, speed)),
+        None => Load::Pressure(Pressure { facets, value }),
+        Some(speed) => Load::CrackPressure(CrackPressure::new(facets, value, speed)),
     };
     let on_axis = |axis: usize| {
         let nodes = (0..solid.reference.len() as u32).filter(|&n| solid.reference[n as usize][axis] == 0.0);

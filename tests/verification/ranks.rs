@@ -101,7 +101,7 @@ fn an_elastic_body_has_the_same_bits_on_any_number_of_ranks() {
         set_moving(&mut solid);
         let top = surface(&solid).into_iter().filter(|f| f.iter().all(|&n| solid.reference[n as usize].z > 0.199));
         let value = Arc::new(|t: f64, _: &Vec3| 1e6 * (t / 1e-5).min(1.0));
-        let pressure = Pressure { facets: top.collect(), thickness: 0.0, value };
+        let pressure = Pressure { facets: top.collect(), value };
         let force = NodalForce { points: vec![(40, 0.5), (7, 0.5)], axis: 1, value: Arc::new(|_, _| 1e3) };
         let supports = ends(&solid, 0.1);
         scene(solid, supports, vec![Load::Pressure(pressure), Load::Nodal(force)], LocalDamping::default())

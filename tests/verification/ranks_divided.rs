@@ -77,7 +77,7 @@ fn loaded(mut solid: Solid, facets: Vec<[u32; 3]>, damping: LocalDamping, viscou
     }
     set_moving(&mut solid);
     let value = Arc::new(|t: f64, _: &Vec3| 1e6 * (t / 1e-5).min(1.0));
-    let pressure = Load::Pressure(Pressure { facets, thickness: 0.0, value });
+    let pressure = Load::Pressure(Pressure { facets, value });
     let gravity = Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) });
     let supports = ends(&solid, 0.1);
     scene(solid, supports, vec![pressure, gravity], damping)

@@ -397,7 +397,7 @@ fn loads_do_the_work_that_the_ledger_says() {
     let end = nodes_where(&solid, |p| p.x < 1e-9).into_iter().map(|n| (n, 1e-3)).collect();
     let loads = vec![
         Load::Nodal(NodalForce { points: end, axis: 1, value: Arc::new(|t, _| 1e6 * (t * 2e4).sin()) }),
-        Load::Pressure(Pressure { facets, thickness: 0.0, value: Arc::new(|t, _| 1e5 * (t * 1e4).cos()) }),
+        Load::Pressure(Pressure { facets, value: Arc::new(|t, _| 1e5 * (t * 1e4).cos()) }),
         Load::Gravity(Gravity { axis: 2, value: Arc::new(|t, _| -9.81 * (1.0 + 1e3 * t)) }),
     ];
     let mut scene = scene(solid, Vec::new(), loads, settings(1e-3));

@@ -65,4 +65,5 @@ pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
 pub use solid::subcycling::rubbed_energy;
+pub use solid::thickness::{facet_thickness, thickness_at};
 pub use state::{BodyState, SolidState, rate_report};

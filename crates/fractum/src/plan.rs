@@ -22,7 +22,7 @@ use fractum_case::build::{BuiltScene, TieReport};
 use fractum_case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_fem::{ElementKind, Kinematics};
+use fractum_fem::{ElementKind, Kinematics, thickness_at};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
@@ -105,7 +105,7 @@ impl Plan {
         if !case.source.stage.is_empty() {
             plan.add("stage", &case.source.stage);
         }
-        plan.describe_conditions(case, mesh, scene);
+        plan.describe_conditions(case, mesh, built);
         if built.conducts_alone {
             plan.add("physics", "conduction of heat");
         } else {
@@ -133,7 +133,7 @@ impl Plan {
             for told in excavation::told(case, &built.scene) {
                 plan.add("excavation", told);
             }
-            plan.describe_conditions(case, mesh, &built.scene);
+            plan.describe_conditions(case, mesh, built);
             plan.describe_solver(case, built, case.solver.end - start);
             start = case.solver.end;
         }
@@ -211,7 +211,8 @@ impl Plan {
         }
     }
 
-    fn describe_conditions(&mut self, case: &Case, mesh: &Mesh, scene: &Scene) {
+    fn describe_conditions(&mut self, case: &Case, mesh: &Mesh, built: &BuiltScene) {
+        let scene = &built.scene;
         for support in &case.supports {
             let letters = |on: &dyn Fn(usize) -> bool| -> String {
                 (0..3).filter(|&a| on(a)).map(|a| ['x', 'y', 'z'][a]).collect()
@@ -240,7 +241,7 @@ impl Plan {
             };
             self.add("support", format!("{}: {what}", support.on.label()));
         }
-        let thickness = plane_thickness(scene);
+        let thickness = |line: [u32; 2]| thickness_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
         let delay = |load: &Load| match &load.kind {
             LoadKind::Pressure { pressure, .. } => pressure.value.delay(),
             _ => None,
@@ -267,7 +268,7 @@ impl Plan {
         }
         for load in case.loads.iter().filter(|load| delay(load).is_none()) {
             let on = match load.kind.on() {
-                Some((on, GroupUse::Facets)) => facets_of(mesh, on, thickness),
+                Some((on, GroupUse::Facets)) => facets_of(mesh, on, scene.solid.is_plane().then_some(&thickness)),
                 Some((on, _)) => on.label().to_owned(),
                 None => "everything".to_owned(),
             };
@@ -480,30 +481,25 @@ fn names(all: &[(bool, &str)]) -> String {
     names.join(", ")
 }
 
-/// Thickness of the first plane body [m], 0 in space.
-fn plane_thickness(scene: &Scene) -> f64 {
-    let mut bodies = (0..scene.solid.body_count()).map(|index| scene.solid.body(index));
-    bodies.find(|body| body.shape == ElementKind::T3).map_or(0.0, |body| body.thickness)
-}
-
 /// The facets that a load acts on, with their area where a group alone tells them.
-fn facets_of(mesh: &Mesh, on: &Selection, thickness: f64) -> String {
+fn facets_of(mesh: &Mesh, on: &Selection, thickness: Option<impl Fn([u32; 2]) -> f64>) -> String {
     match &on.within {
         None => format!("{} ({})", on.label(), area_of(mesh, on.group_name(), thickness)),
         Some(_) => format!("{} (facets where the condition holds)", on.label()),
     }
 }
 
-/// Area of the facets of a group; in the plane its lines times the thickness.
-fn area_of(mesh: &Mesh, group: &str, thickness: f64) -> String {
+/// Area of the facets of a group; in the plane its lines times the thickness there.
+fn area_of(mesh: &Mesh, group: &str, thickness: Option<impl Fn([u32; 2]) -> f64>) -> String {
     let mut area = 0.0;
     for group in mesh.group(group) {
-        if thickness > 0.0 {
-            let lengths = group.lines.iter().map(|&line| {
-                let [a, b] = mesh.lines[line as usize].map(|n| mesh.nodes[n as usize]);
-                (b - a).norm()
+        if let Some(thickness) = &thickness {
+            let areas = group.lines.iter().map(|&line| {
+                let ends = mesh.lines[line as usize];
+                let [a, b] = ends.map(|n| mesh.nodes[n as usize]);
+                (b - a).norm() * thickness(ends)
             });
-            area += thickness * lengths.sum::<f64>();
+            area += areas.sum::<f64>();
             continue;
         }
         for &triangle in &group.triangles {

@@ -258,3 +258,70 @@ fn stiffnesses_that_differ_by_a_million_are_solved_by_iteration_too() {
         assert!((found / exact - 1.0).abs() < 1e-3, "{solver}: {found} for {exact}");
     }
 }
+
+/// Plates of 10 and 30 mm beside each other under a load along y, at rest.
+const PLATES: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "thin"
+kind = "solid"
+group = "body"
+material = "stone"
+plane = "stress"
+thickness = "10 mm"
+[[bodies]]
+name = "thick"
+kind = "solid"
+group = "far"
+material = "stone"
+plane = "stress"
+thickness = "30 mm"
+[[supports]]
+group = "x-"
+fix = "x"
+[[supports]]
+group = "x+"
+fix = "x"
+[[supports]]
+group = "y-"
+fix = "y"
+[[loads]]
+group = "y+"
+LOAD
+[solver]
+kind = "static"
+end = "1 s"
+[[probes]]
+name = "thin"
+displacement = { where = "x < 19 cm && y > 19 cm", along = "y" }
+[[probes]]
+name = "thick"
+displacement = { where = "x > 21 cm && y > 19 cm", along = "y" }
+[[probes]]
+name = "reaction"
+reaction = { group = "y-", along = "y" }
+[[probes]]
+name = "area"
+surface = { group = "y+", measure = "area" }
+"#;
+
+#[test]
+fn every_plate_has_its_own_thickness() {
+    let mesh = mesh_bytes(&halves(mesh("plate"), true), MshFormat::V4_1Binary);
+    for load in ["pressure = \"-3 MPa\"", "traction = { y = \"3 MPa\" }", "force = { y = \"24 kN\" }"] {
+        let place = Workplace::with_mesh(&PLATES.replace("LOAD", load), &mesh);
+        let summary = crate::common::run(&place, "out", "1");
+        let expected = [("thin", 2e-5), ("thick", 2e-5), ("reaction", -24e3), ("area", 8e-3)];
+        for (name, expected) in expected {
+            let found = summary["probes"][name]["final"].as_f64().unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-3, "{load}: {name} {found}, expected {expected}");
+        }
+        let log = fs::read_to_string(place.path("out/run.log")).unwrap();
+        assert!(load.starts_with("force") || log.contains("y+ (0.008 m²)"), "{log}");
+    }
+}

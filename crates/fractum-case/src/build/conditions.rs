@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fractum_fem::{ElementKind, facet_area};
+use fractum_fem::{Solid, facet_area, facet_thickness};
 use fractum_math::Vec3;
 use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
 
-use super::bodies::{Numbering, Part};
+use super::bodies::Numbering;
 use super::{Context, function, use_in_words};
 use crate::model::{self, Components, Detonation, GroupUse, InCracks, LoadKind, Selection};
 use crate::{Spanned, TimeFunction};
@@ -56,16 +56,16 @@ impl Context<'_> {
                     LoadKind::Pressure { on, pressure, in_cracks, detonation },
                     LoadedPoints::Nodes(numbering, surface),
                 ) => {
-                    let (facets, thickness) = (self.selected_facets(on, numbering, surface), surface.thickness);
+                    let facets = self.selected_facets(on, numbering, surface);
                     let value = match detonation {
                         None => function(&pressure.value),
                         Some(front) => behind_front(&pressure.value, *front, facets.iter().flatten(), numbering),
                     };
                     loads.push(match in_cracks {
-                        None => Load::Pressure(Pressure { facets, thickness, value }),
+                        None => Load::Pressure(Pressure { facets, value }),
                         Some(InCracks { front_speed }) => {
                             self.refuse_partial_mouth(on, &facets, &loads);
-                            Load::CrackPressure(CrackPressure::new(facets, thickness, value, *front_speed))
+                            Load::CrackPressure(CrackPressure::new(facets, value, *front_speed))
                         }
                     });
                 }
@@ -142,7 +142,7 @@ impl Context<'_> {
         let scene = |n: u32| numbering.scene_node[n as usize];
         let mut facets = Vec::new();
         for group in self.mesh.group(&group.value) {
-            if surface.thickness > 0.0 {
+            if surface.is_plane {
                 let lines = group.lines.iter().map(|&l| self.mesh.lines[l as usize].map(scene));
                 facets.extend(lines.filter_map(|[a, b]| surface.outward([a, b, b])));
             } else {
@@ -183,23 +183,25 @@ pub(super) enum LoadedPoints<'a> {
 pub(super) struct Surface<'a> {
     pub(super) facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
-    /// Thickness of plane bodies [m], 0 in space.
-    thickness: f64,
+    is_plane: bool,
+    /// Thickness behind each facet where bodies are plane [m].
+    thickness: HashMap<[u32; 3], f64>,
     positions: &'a [Vec3],
 }
 
 impl<'a> Surface<'a> {
-    pub(super) fn new(boundary: &'a [[u32; 3]], parts: &[Part], positions: &'a [Vec3]) -> Self {
-        let plane = parts.iter().find(|part| part.shape == ElementKind::T3);
-        let thickness = plane.map_or(0.0, |part| part.body.depth);
+    pub(super) fn new(boundary: &'a [[u32; 3]], solid: &Solid, positions: &'a [Vec3]) -> Self {
+        let is_plane = solid.is_plane();
+        let edges = boundary.iter().filter(|_| is_plane);
+        let thickness = edges.map(|facet| (sorted(*facet), facet_thickness(solid, facet))).collect();
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
-        Surface { facets: boundary, by_nodes, thickness, positions }
+        Surface { facets: boundary, by_nodes, is_plane, thickness, positions }
     }
 
     /// Outward normal of a facet without load, as long as its area [m²].
     pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
         let corners = facet.map(|n| self.positions[n as usize]);
-        facet_area(corners, (self.thickness > 0.0).then_some(self.thickness))
+        facet_area(corners, self.is_plane.then(|| self.thickness.get(&sorted(*facet)).copied().unwrap_or_default()))
     }
 
     /// Middle of a facet without load [m].
@@ -210,7 +212,7 @@ impl<'a> Surface<'a> {
 
     /// Nodes of a facet, each once.
     pub(super) fn corners<'f>(&self, facet: &'f [u32; 3]) -> &'f [u32] {
-        &facet[..if self.thickness > 0.0 { 2 } else { 3 }]
+        &facet[..if self.is_plane { 2 } else { 3 }]
     }
 
     /// The facet with these nodes, oriented outwards.

@@ -206,10 +206,10 @@ impl<'a> Context<'a> {
                 .enumerate()
                 .for_each(|(body, facets)| neighbours::note_skin(&mut solid, body, facets));
         }
-        let surface = Surface::new(&boundary, &parts, &numbering.positions);
+        let surface = Surface::new(&boundary, &solid, &numbering.positions);
         let left = excavation::what_is_left(self, &parts, &numbering);
         let (loaded, facets) = left.as_ref().map_or((&numbering, &boundary), |(numbering, facets)| (numbering, facets));
-        let bare = Surface::new(facets, &parts, &numbering.positions);
+        let bare = Surface::new(facets, &solid, &numbering.positions);
         warnings.extend(excavation::doubts(self, &parts, loaded));
         let (supports, surface_supports, loads) =
             self.supports_and_loads(&solid, &parts, loaded, &bare, &boundary_of_parts)?;

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::ElementKind;
 use crate::element::{facet_area, measure_and_gradients, regular_edge};
 use crate::solid::Solid;
+use crate::solid::thickness::facet_thickness;
 
 const NONE: u32 = u32::MAX;
 
@@ -295,8 +296,7 @@ impl CrackCell {
 
 /// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times thickness.
 pub fn area_at(solid: &Solid, nodes: &[u32; 3], at: impl Fn(u32) -> Vec3) -> Vec3 {
-    let thickness = || solid.bodies.first().map_or(1.0, |model| model.body.thickness);
-    facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(thickness))
+    facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(|| facet_thickness(solid, nodes)))
 }
 
 /// Volume of an element at tⁿ [m³]; negative where it is turned inside out.

@@ -3,6 +3,7 @@ pub(crate) mod body_model;
 pub(crate) mod evaluate;
 pub(crate) mod neighbours;
 pub(crate) mod subcycling;
+pub(crate) mod thickness;
 
 use std::ops::Range;
 
@@ -22,6 +23,7 @@ use crate::solid::body_model::Chosen;
 use crate::solid::evaluate::Block;
 use crate::solid::neighbours::{Alone, Neighbours};
 use crate::solid::subcycling::Subcycling;
+use crate::solid::thickness::Thicknesses;
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
@@ -53,6 +55,7 @@ pub struct Solid {
     pub(crate) copies: Vec<u32>,
     /// What cells with steps of two sizes need; none where all take the same.
     pub(crate) subcycling: Option<Box<Subcycling>>,
+    pub(crate) thicknesses: Thicknesses,
 }
 
 impl Solid {
@@ -119,6 +122,7 @@ impl Solid {
             chunk_work: vec![HalfSteps::default(); nodes.len().div_ceil(CHUNK)],
             reference: nodes,
             mass,
+            thicknesses: Thicknesses::of(&bodies),
             bodies,
             blocks,
             slots,

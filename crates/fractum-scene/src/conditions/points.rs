@@ -1,4 +1,4 @@
-use fractum_fem::{Solid, neighbours};
+use fractum_fem::{Solid, facet_thickness, neighbours};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
@@ -27,6 +27,11 @@ pub(crate) trait Points {
 
     /// Velocity at the half step [m/s].
     fn velocity(&self, point: usize) -> &Vec3;
+
+    /// Thickness of a facet that is an edge in the plane [m]; 0 in space.
+    fn thickness(&self, _facet: &[u32; 3]) -> f64 {
+        0.0
+    }
 }
 
 /// Points that supports move and loads push.
@@ -73,6 +78,10 @@ impl Points for Solid {
 
     fn velocity(&self, point: usize) -> &Vec3 {
         &self.velocity[point]
+    }
+
+    fn thickness(&self, facet: &[u32; 3]) -> f64 {
+        facet_thickness(self, facet)
     }
 }
 

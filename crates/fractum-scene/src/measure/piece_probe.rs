@@ -1,6 +1,6 @@
 //! Facets of a group as they are at present, and fragments: area, enclosed volume, the piece that holds some nodes, sizes.
 
-use fractum_fem::{Solid, cracks};
+use fractum_fem::{Solid, cracks, thickness_at};
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
 
@@ -110,7 +110,8 @@ pub fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
 
 /// Diameter of the sphere of a fragment's volume; where solids are plane, of the circle of its area [m].
 pub fn fragment_size(solid: &Solid, fragment: &Fragment) -> f64 {
-    equivalent_diameter(fragment.volume, solid.is_plane().then(|| solid.body(0).thickness))
+    let plane = fragment.nodes.first().filter(|_| solid.is_plane());
+    equivalent_diameter(fragment.volume, plane.map(|&node| thickness_at(solid, [node; 2])))
 }
 
 /// Diameter of the sphere of a volume; of the circle of its area where there is a thickness [m].

@@ -14,8 +14,6 @@ use crate::time_function::TimeFunction;
 pub struct CrackPressure {
     /// Points of outward facets; an edge in the plane repeats its second one.
     pub facets: Vec<[u32; 3]>,
-    /// Thickness for edges in the plane [m]; 0 for triangles.
-    pub thickness: f64,
     /// Pressure over time and the reference centre of the facet.
     pub value: TimeFunction,
     /// How fast it advances into the cracks [m/s]; at once if absent.
@@ -26,8 +24,8 @@ pub struct CrackPressure {
 
 impl CrackPressure {
     /// Pressure that is in all of the cracks at once, or advances into them.
-    pub fn new(facets: Vec<[u32; 3]>, thickness: f64, value: TimeFunction, front_speed: Option<f64>) -> Self {
-        CrackPressure { facets, thickness, value, front_speed, mouth: 0 }
+    pub fn new(facets: Vec<[u32; 3]>, value: TimeFunction, front_speed: Option<f64>) -> Self {
+        CrackPressure { facets, value, front_speed, mouth: 0 }
     }
 
     /// The mouths of all such loads; loads on the same facets share one.
@@ -46,7 +44,7 @@ impl CrackPressure {
     pub(super) fn apply(&self, points: &impl Points, cracks: &CrackNetwork, time: f64, forces: &mut Vec<(u32, Vec3)>) {
         let mouth = &cracks.mouths()[self.mouth];
         for (facet, _) in mouth.facets.iter().zip(&mouth.live).filter(|(_, live)| **live) {
-            push_facet(points, facet, self.thickness, |centre| (self.value)(time, centre), forces);
+            push_facet(points, facet, |centre| (self.value)(time, centre), forces);
         }
         for cell in cracks.cells_of(self.mouth) {
             for facet in cell.walls() {
@@ -56,7 +54,7 @@ impl CrackPressure {
                     let is_ahead = left.is_some_and(|left| (self.value)(left, centre) == 0.0);
                     if is_ahead { 0.0 } else { (self.value)(time, centre) }
                 };
-                push_facet(points, facet, self.thickness, value, forces);
+                push_facet(points, facet, value, forces);
             }
         }
     }

@@ -12,8 +12,6 @@ use crate::time_function::TimeFunction;
 pub struct Pressure {
     /// Points of outward facets; an edge in the plane repeats its second one.
     pub facets: Vec<[u32; 3]>,
-    /// Thickness for edges in the plane [m]; 0 for triangles.
-    pub thickness: f64,
     /// Pressure over time and the reference centre of the facet.
     pub value: TimeFunction,
 }
@@ -21,7 +19,7 @@ pub struct Pressure {
 impl Pressure {
     pub(super) fn apply(&self, points: &impl Points, time: f64, forces: &mut Vec<(u32, Vec3)>) {
         for facet in &self.facets {
-            push_facet(points, facet, self.thickness, |centre| (self.value)(time, centre), forces);
+            push_facet(points, facet, |centre| (self.value)(time, centre), forces);
         }
     }
 }
@@ -33,10 +31,10 @@ impl Pressure {
 pub(super) fn push_facet(
     points: &impl Points,
     facet: &[u32; 3],
-    thickness: f64,
     pressure: impl Fn(&Vec3) -> f64,
     forces: &mut Vec<(u32, Vec3)>,
 ) {
+    let thickness = points.thickness(facet);
     let place = facet.map(|n| points.position(n as usize));
     let [a, b, c] = facet.map(|n| points.reference(n as usize));
     let (centre, corners) = if thickness > 0.0 { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
@@ -58,7 +56,7 @@ mod tests {
     use super::*;
 
     /// Three nodes of a triangle in the xy-plane that has been stretched from the origin.
-    struct Stretched(f64, [Vec3; 3]);
+    struct Stretched(f64, [Vec3; 3], f64);
 
     impl Points for Stretched {
         fn reference(&self, point: usize) -> &Vec3 {
@@ -80,6 +78,10 @@ mod tests {
         fn velocity(&self, _: usize) -> &Vec3 {
             &self.1[0]
         }
+
+        fn thickness(&self, _: &[u32; 3]) -> f64 {
+            self.2
+        }
     }
 
     #[test]
@@ -87,7 +89,7 @@ mod tests {
         let push = |stretch: f64, facet, thickness| {
             let nodes = [Vec3::zeros(), Vec3::x() * 2.0, Vec3::y()];
             let mut forces = Vec::new();
-            push_facet(&Stretched(stretch, nodes), &facet, thickness, |_| 6.0, &mut forces);
+            push_facet(&Stretched(stretch, nodes, thickness), &facet, |_| 6.0, &mut forces);
             forces.iter().map(|(_, force)| force).sum::<Vec3>()
         };
         let in_space = [1.0, 1.2, 10.0].map(|stretch| push(stretch, [0, 1, 2], 0.0));
