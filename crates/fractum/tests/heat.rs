@@ -474,3 +474,31 @@ fn what_cools_between_walls_bears_its_strength_and_cracks() {
         assert!(ended["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", ended["energy"]);
     }
 }
+
+#[test]
+fn a_free_body_that_is_heated_evenly_grows_without_stress_at_rest() {
+    let mesh = mesh_bytes(&layers([30, 4]), MshFormat::V4_1Binary);
+    let low = "conductivity = \"50 W/(m K)\"\nheat_capacity = \"500 J/(kg K)\"\n\n[materials.up]";
+    let expansion = low.replace("\n\n", "\nexpansion = \"1e-5 1/K\"\n\n");
+    let held = "[\"500 s\", \"200 K\"], [\"1000 s\", \"200 K\"]";
+    let elastic =
+        LAYERS.replace("NU", "0.3").replace("[\"1000 s\", \"200 K\"]", held).replace(low, &expansion).replace(
+            "displacement = { where = \"x > 59.99 mm\", along = \"y\" }",
+            "displacement = { where = \"x > 59.99 mm\", along = \"x\" }",
+        );
+    let damage = |name: &str| {
+        format!(
+            "[materials.{name}.damage]\ntensile_strength = \"10 MPa\"\nfracture_energy = \"100 J/m^2\"\n[materials.{name}.thermal]"
+        )
+    };
+    let breakable = ["low", "up"]
+        .iter()
+        .fold(elastic.clone(), |case, name| case.replace(&format!("[materials.{name}.thermal]"), &damage(name)));
+    for case in [elastic, breakable] {
+        let place = Workplace::with_mesh(&case, &mesh);
+        let summary = run(&place, "out", "1");
+        assert!(!format!("{}", summary["warnings"]).contains("energy-balance"), "{}", summary["warnings"]);
+        let found = summary["probes"]["tip"]["final"].as_f64().unwrap();
+        assert!((found / (-1e-5 * 100.0 * 0.06) - 1.0).abs() < 1e-6, "{found}");
+    }
+}

@@ -25,6 +25,8 @@ const LOOKS: usize = 6;
 const LEFT: f64 = 0.5;
 /// Unbalanced forces over those that drive a linear solution, below which they are rounding.
 const ROUNDING: f64 = 1e-11;
+/// Energy over that of the forces that drive a step on their way, below which it is rounding.
+const NO_ENERGY: f64 = 1e-9;
 /// Equilibria of a step at which what sticks is brought back: some four suffice, ten in stiff elements.
 const MOST_BROUGHT_BACK: usize = 16;
 
@@ -104,11 +106,12 @@ impl StaticSolver {
             }
             let [missing, forces] = found;
             found_at = present + tau;
-            // A body that is moved without strain bears no forces that its rounding could be held against.
+            // A body that is moved or heated without strain bears no forces that its rounding could be held against.
             let linear = points.is_empty() && !has_contacts(scene);
-            let is_rounding = linear && missing <= ROUNDING * self.response.driving;
-            let balanced =
-                is_rounding || missing <= self.settings.tolerance * forces.max(NO_FORCE * self.largest_forces);
+            let Response { given, driving, .. } = self.response;
+            let is_rounding = !has_contacts(scene) && missing <= ROUNDING * driving;
+            let least = NO_FORCE * self.largest_forces.max(given);
+            let balanced = is_rounding || missing <= self.settings.tolerance * forces.max(least);
             if balanced && leads == self.lead.at {
                 slowest = slowest.max(iteration);
                 if bring_back(scene, &self.response.start, [present, present + tau], &mut self.touching.stretch) {
@@ -118,7 +121,11 @@ impl StaticSolver {
                     (iteration, brought_back) = (0, brought_back + 1);
                     continue;
                 }
-                self.largest_forces = self.largest_forces.max(forces);
+                self.largest_forces = self.largest_forces.max(forces).max(given);
+                // Where no stress comes of it, energies are rounding that nothing is to be held against.
+                let way = |(to, from): (&Vec3, &Vec3)| (to - from).norm();
+                let farthest = self.response.start.iter().zip(&scene.solid.displacement).map(way).fold(0.0, f64::max);
+                scene.ledger.scale = scene.ledger.scale.max(NO_ENERGY * driving * farthest);
                 return Ok(Some((present + tau, slowest)));
             }
             // Of an elastic step nothing but the linear solution is left to improve.
@@ -148,6 +155,7 @@ impl StaticSolver {
     ///
     /// - `ahead`: whether to begin with the last step's trend
     fn begin(&mut self, scene: &Scene, points: &[DamagePoint], growth: f64, ahead: bool) {
+        (self.response.given, self.response.driving) = (0.0, 0.0);
         self.trial.clone_from(&self.damage);
         self.anderson.reset();
         self.edges.loading.clear();
@@ -338,6 +346,7 @@ impl StaticSolver {
         for (i, anchor) in self.system.anchors().iter().enumerate() {
             self.response.right[i] += (self.touching.place[i] - field[i]) * *anchor;
         }
+        let given = norm(&self.response.right);
         self.system.solve(&self.response.right, &mut self.response.start).map_err(|e| come_apart(scene, e))?;
         check_loose(scene, &self.response.start, 1.0)?;
         for (u, p) in self.response.start.iter_mut().zip(&field) {
@@ -356,7 +365,9 @@ impl StaticSolver {
         for spring in &self.touching.springs {
             spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.response.right);
         }
-        self.response.driving = ahead.abs() * self.response.right.iter().map(Vec3::norm_squared).sum::<f64>().sqrt();
+        // Temperatures that have changed are out of balance from the start.
+        self.response.given = self.response.given.max(given);
+        self.response.driving = self.response.driving.max(given + ahead.abs() * norm(&self.response.right));
         self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| come_apart(scene, e))?;
         check_loose(scene, &self.response.slope, ahead)?;
         for (u, p) in self.response.slope.iter_mut().zip(&field) {
@@ -364,6 +375,10 @@ impl StaticSolver {
         }
         Ok(())
     }
+}
+
+fn norm(forces: &[Vec3]) -> f64 {
+    forces.iter().map(Vec3::norm_squared).sum::<f64>().sqrt()
 }
 
 impl Touching {

@@ -119,7 +119,9 @@ struct Response {
     slope: Vec<Vec3>,
     /// Right-hand side, or unbalanced forces [N].
     right: Vec<Vec3>,
-    /// Forces by which the supports and loads of the step drive what is free, with all else in its place [N].
+    /// Forces that the state of the last equilibrium bears, with the temperatures and loads of the next one [N].
+    given: f64,
+    /// The same with those by which the supports and loads of the step drive what is free, with all else in its place [N].
     driving: f64,
     start_stress: Vec<Sym3>,
     slope_stress: Vec<Sym3>,
