@@ -213,6 +213,11 @@ impl TimeFunction {
         }
     }
 
+    /// Whether it is zero everywhere and at all times.
+    pub fn is_zero(&self) -> bool {
+        !self.depends_on_time() && !self.depends_on_position() && self.value(0.0, Vec3::zeros()) == 0.0
+    }
+
     /// Whether the value changes with time.
     pub fn depends_on_time(&self) -> bool {
         match self {

@@ -1,6 +1,7 @@
 //! From a case and its mesh to a scene: names become numbers here, and every mistake that only the mesh can show is
 //! reported with its place in the case file.
 
+mod across_plane;
 mod bodies;
 mod body_doubts;
 mod bonded;
@@ -191,6 +192,7 @@ impl<'a> Context<'a> {
         ties::take_out(self, &mut parts, &taken);
         self.without_mistakes()?;
         let numbering = bodies::number_nodes(self, &parts);
+        across_plane::check(self, &parts);
         let mut boundary = bodies::boundary(self, &parts, &numbering, &[]);
         let inner = interfaces::inner_facets(self, &numbering);
         boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
