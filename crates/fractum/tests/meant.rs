@@ -325,3 +325,29 @@ fn every_plate_has_its_own_thickness() {
         assert!(load.starts_with("force") || log.contains("y+ (0.008 m²)"), "{log}");
     }
 }
+
+#[test]
+fn a_force_on_elements_is_shared_by_their_volume() {
+    // Elements that grow from end to end: u = F L/(2 E A) at the free end of a bar under a force all along it.
+    let graded = |mut mesh: Mesh| {
+        mesh.nodes.iter_mut().for_each(|node| node.x = 0.4 * (node.x / 0.4).powi(3));
+        mesh
+    };
+    let plane = graded(structured_rectangle([32, 4], [0.4, 0.2], None));
+    let space = graded(structured_box([32, 4, 4], Vec3::new(0.4, 0.2, 0.01), None));
+    for (mesh, plate) in [(plane, "plane = \"stress\"\nthickness = \"10 mm\"\n"), (space, "")] {
+        let case = PLATES.split("[[bodies]]").next().unwrap().replace("poisson_ratio = 0.2", "poisson_ratio = 0");
+        let body =
+            format!("[[bodies]]\nname = \"bar\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stone\"\n{plate}");
+        let held =
+            "[[supports]]\ngroup = \"x-\"\nfix = \"xyz\"\n[[loads]]\ngroup = \"body\"\nforce = { x = \"6 kN\" }\n";
+        let held = if plate.is_empty() { held.to_owned() } else { held.replace("xyz", "xy") };
+        let rest = "[solver]\nkind = \"static\"\nend = \"1 s\"\n[[probes]]\nname = \"end\"\ndisplacement = { group = \"x+\", along = \"x\" }\n";
+        let place =
+            Workplace::with_mesh(&format!("{case}{body}{held}{rest}"), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+        let summary = crate::common::run(&place, "out", "1");
+        let found = summary["probes"]["end"]["final"].as_f64().unwrap();
+        let expected = 6e3 * 0.4 / (2.0 * 30e9 * 0.2 * 0.01);
+        assert!((found / expected - 1.0).abs() < 0.01, "{found}, expected {expected}");
+    }
+}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use fractum_fem::{Solid, facet_area, facet_thickness};
 use fractum_math::Vec3;
+use fractum_mesh::quality::{area_vector, signed_volume};
 use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
 
 use super::bodies::Numbering;
@@ -89,7 +90,7 @@ impl Context<'_> {
         }
     }
 
-    /// Shares of a total force: by area where facets or particles are meant, else equal.
+    /// Shares of a total force: by area where facets or particles are meant, by what belongs to each node where elements or lines within are, else equal.
     pub(super) fn shares(&mut self, on: &Selection, points: &LoadedPoints) -> Vec<(u32, f64)> {
         let areas = match (points, &on.group) {
             (LoadedPoints::Nodes(numbering, surface), _) => surface.areas(&self.facets(on, numbering, surface)),
@@ -103,11 +104,57 @@ impl Context<'_> {
         match points {
             LoadedPoints::Nodes(numbering, _) if total <= 0.0 => {
                 let nodes = self.selected_nodes(on, numbering);
-                let share = 1.0 / nodes.len().max(1) as f64;
-                nodes.into_iter().map(|node| (node, share)).collect()
+                self.refuse_divided_volume(on);
+                let measures = on.group.as_ref().map_or_else(HashMap::new, |group| self.measures(group, numbering));
+                let measure = |node: &u32| measures.get(node).copied().unwrap_or_default();
+                let total: f64 = nodes.iter().map(measure).sum();
+                let equal = 1.0 / nodes.len().max(1) as f64;
+                let share = |node| if total > 0.0 { measure(&node) / total } else { equal };
+                nodes.into_iter().map(|node| (node, share(node))).collect()
             }
             _ => areas.into_iter().map(|(point, area)| (point, area / total)).collect(),
         }
+    }
+
+    /// Each process of a mesh in parts knows a part of the volume of a group.
+    fn refuse_divided_volume(&mut self, on: &Selection) {
+        let Some(group) = on.group.as_ref().filter(|_| self.division.is_some()) else { return };
+        if self.mesh.group_tetrahedra(&group.value) > 0 {
+            let found = format!(
+                "= \"{}\": elements share a total by their volume, which no process of a divided mesh knows",
+                group.value
+            );
+            self.error(&group.place, found, "a group of facets, or gravity");
+        }
+    }
+
+    /// What belongs to each node of a group in the file: volume of tetrahedra, or area of triangles, or length of lines; none of points.
+    fn measures(&self, group: &Spanned<String>, numbering: &Numbering) -> HashMap<u32, f64> {
+        let mesh = self.mesh;
+        let groups = mesh.group(&group.value);
+        let mut measures = HashMap::new();
+        let mut give = |corners: &[u32], measure: f64| {
+            for &node in corners {
+                *measures.entry(numbering.scene_node[node as usize]).or_default() += measure / corners.len() as f64;
+            }
+        };
+        for corners in groups.iter().flat_map(|group| &group.tetrahedra).map(|&t| mesh.tetrahedra[t as usize]) {
+            give(&corners, signed_volume(corners.map(|node| mesh.nodes[node as usize])).abs());
+        }
+        let is_solid = groups.iter().any(|group| !group.tetrahedra.is_empty());
+        for corners in
+            groups.iter().filter(|_| !is_solid).flat_map(|group| &group.triangles).map(|&t| mesh.triangles[t as usize])
+        {
+            give(&corners, area_vector(corners.map(|node| mesh.nodes[node as usize])).norm());
+        }
+        let has_area = is_solid || groups.iter().any(|group| !group.triangles.is_empty());
+        for ends in
+            groups.iter().filter(|_| !has_area).flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize])
+        {
+            let [a, b] = ends.map(|node| mesh.nodes[node as usize]);
+            give(&ends, (b - a).norm());
+        }
+        measures
     }
 
     /// Outward facets that are meant; an error if there are none on the surface.

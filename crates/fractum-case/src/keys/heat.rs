@@ -25,7 +25,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("heat.conditions[].area", K::Quantity(D::AREA), "", "Particles with flux or convection, required there: area of the surface that they stand for, > 0"),
     key("heat.conditions[].temperature", K::TimeFunction(D::TEMPERATURE), "", "Prescribed temperature"),
     key("heat.conditions[].flux", K::TimeFunction(D::HEAT_FLUX), "", "Heat per area that flows in"),
-    key("heat.conditions[].power", K::TimeFunction(D::POWER), "", "Heat that flows in, shared over the points"),
+    key("heat.conditions[].power", K::TimeFunction(D::POWER), "", "Heat that flows in, shared as a force"),
     key("heat.conditions[].source", K::TimeFunction(D::HEAT_SOURCE), "", "Heat per volume; an expression of t, x, y, z moves it"),
     key("heat.conditions[].convection", K::Table, "", "Convection h (T∞ - T)"),
     key("heat.conditions[].convection.coefficient", K::Quantity(D::HEAT_TRANSFER), "required", "Coefficient of heat transfer h, > 0"),

@@ -67,7 +67,7 @@ pub enum HeatKind {
     Temperature(Spanned<TimeFunction>),
     /// Heat per area that flows in [W/m²].
     Flux(Spanned<TimeFunction>),
-    /// Heat that flows in, shared over the points [W].
+    /// Heat that flows in, shared as a force [W].
     Power(Spanned<TimeFunction>),
     /// Heat per volume [W/m³].
     Source(Spanned<TimeFunction>),
