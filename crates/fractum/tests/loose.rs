@@ -371,3 +371,65 @@ fn the_contact_of_its_material_counts_for_a_rigid_body_unless_it_has_its_own() {
     let own = rebound(&AT_A_WALL.replace("normal = \"z\"", "normal = \"z\"\ncontact = { restitution = 0.2 }"));
     assert!(between(own) && (own - low).abs() < 1e-3, "{own} {low}");
 }
+
+/// A bead strikes a free box beside its middle.
+const STRUCK: &str = r#"fractum = 1
+
+[materials.steel]
+density = "7850 kg/m^3"
+young_modulus = "1 GPa"
+poisson_ratio = 0.3
+contact = { friction = 0, restitution = 1.0 }
+
+[[bodies]]
+name = "box"
+kind = "rigid"
+shape = "box"
+point = ["-30 mm", "-10 mm", "-10 mm"]
+size = ["60 mm", "20 mm", "20 mm"]
+free = "xyz"
+free_rotation = true
+mass = "100 g"
+contact = { friction = 0, restitution = 1.0 }
+
+[[bodies]]
+name = "bead"
+kind = "particles"
+material = "steel"
+file = "bead.csv"
+unit = "mm"
+initial_velocity = { z = "-2 m/s" }
+
+[solver]
+end = "3 ms"
+
+[[probes]]
+name = "turning"
+angular_momentum = { along = "y" }
+[[probes]]
+name = "bead"
+velocity = { group = "bead", along = "z" }
+"#;
+
+#[test]
+fn the_angular_momentum_of_a_scene_counts_free_rigid_bodies() {
+    let place = Workplace::new(STRUCK);
+    fs::write(place.path("bead.csv"), "20, 0, 16, 5\n").unwrap();
+    let summary = run(&place, "out", "1");
+    let value = |name: &str, what: &str| summary["probes"][name][what].as_f64().unwrap();
+    assert!(value("bead", "final") > 1.0, "it bounces: {}", summary["probes"]);
+    let [least, most] = ["min", "max"].map(|what| value("turning", what));
+    assert!(least > 0.0 && most / least - 1.0 < 1e-6, "{}", summary["probes"]["turning"]);
+}
+
+#[test]
+fn a_rigid_body_that_falls_into_another_one_is_told() {
+    let floor = "[[bodies]]\nname = \"floor\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"z\"\npoint = [0, 0, \"-11 mm\"]\n";
+    let fall = format!("{floor}[[loads]]\ngravity = {{ z = \"-9.81 m/s^2\" }}\n[solver]\n");
+    for (end, is_told) in [("60 ms", true), ("30 ms", false)] {
+        let place = Workplace::new(&STRUCK.replace("[solver]\n", &fall).replace("3 ms", end));
+        fs::write(place.path("bead.csv"), "200, 0, 16, 5\n").unwrap();
+        let told = format!("{}", run(&place, "out", "1")["warnings"]);
+        assert_eq!(told.contains("\\\"box\\\" has moved into \\\"floor\\\""), is_told, "{told}");
+    }
+}

@@ -24,6 +24,15 @@ pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
     if bodies.iter().any(|body| body.nodes.is_empty()) {
         return None;
     }
+    let particles = |body: &&Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
+    if let Some(Body { name, .. }) = case.bodies.iter().find(particles) {
+        let found = format!(
+            "= \"{}\": plane solids touch no particles, and it passes through \"{}\"",
+            name.value, bodies[0].name.value
+        );
+        let note = Diagnostic::warning(Code::NoContact, &name.place, found);
+        return Some(note.remedy("make the solid a rigid body, or model it in space"));
+    }
     let pieces = pieces(mesh, bodies);
     let other = pieces.iter().position(|piece| *piece != 0)?;
     let [first, second] = [&bodies[0], &bodies[other]].map(|body| &body.name.value);

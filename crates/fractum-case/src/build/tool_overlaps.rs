@@ -9,7 +9,7 @@ use fractum_mesh::topology;
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_pack::ClosedSurface;
-use fractum_scene::{Bonded, Drive, Form, RigidBody, Shape};
+use fractum_scene::{Bonded, Form, RigidBody, Shape};
 
 use super::Context;
 use crate::{Diagnostic, Place};
@@ -211,22 +211,9 @@ fn within_another<'a>(
     others: impl Iterator<Item = &'a RigidBody>,
     place: &Place,
 ) -> Option<Diagnostic> {
-    let moves = |body: &RigidBody| body.along.iter().chain(&body.about).any(|drive| !matches!(drive, Drive::Fixed));
-    let middle = match &tool.form {
-        Form::Shape { hollow: true, .. } | Form::Shape { shape: Shape::HalfSpace, .. } => return None,
-        Form::Shape { .. } => tool.frame.origin,
-        Form::Mesh { points, .. } => {
-            tool.frame.origin + tool.frame.to_space(&(points.iter().sum::<Vec3>() / points.len() as f64))
-        }
-    };
-    let holds = |other: &&RigidBody| match &other.form {
-        Form::Shape { shape, hollow: false } if moves(tool) || moves(other) => {
-            shape.outside(&other.frame.to_body(&middle)).distance < 0.0
-        }
-        _ => false,
-    };
+    let middle = tool.middle()?;
     let mut others = others;
-    let other = others.find(holds)?;
+    let other = others.find(|other| (tool.moves() || other.moves()) && other.covers(&middle))?;
     let found = format!("= \"{}\": its middle {} lies within \"{}\"", tool.name, text(middle), other.name);
     let note = Diagnostic::warning(Code::InitialOverlap, place, found);
     Some(note.remedy("move one of them: rigid bodies do not feel each other"))

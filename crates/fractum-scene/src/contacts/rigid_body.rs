@@ -144,9 +144,47 @@ impl RigidBody {
         self.frame.origin - self.start
     }
 
+    /// Whether something moves it, or could.
+    pub fn moves(&self) -> bool {
+        self.along.iter().chain(&self.about).any(|drive| !matches!(drive, Drive::Fixed))
+    }
+
+    /// Middle of the body [m]; planes and containers have none.
+    pub fn middle(&self) -> Option<Vec3> {
+        match &self.form {
+            Form::Shape { hollow: true, .. } | Form::Shape { shape: Shape::HalfSpace, .. } => None,
+            Form::Shape { .. } => Some(self.frame.origin),
+            Form::Mesh { points, .. } => {
+                let middle = points.iter().sum::<Vec3>() / points.len() as f64;
+                Some(self.frame.origin + self.frame.to_space(&middle))
+            }
+        }
+    }
+
+    /// Whether a place lies within its shape; containers and facets have no inside.
+    pub fn covers(&self, place: &Vec3) -> bool {
+        match &self.form {
+            Form::Shape { shape, hollow: false } => shape.outside(&self.frame.to_body(place)).distance < 0.0,
+            _ => false,
+        }
+    }
+
+    /// Whether its middle has come within another one since the start: rigid bodies do not touch each other.
+    pub fn has_entered(&self, other: &RigidBody) -> bool {
+        let Some(middle) = self.middle() else { return false };
+        let at_start = middle - self.displacement() + other.displacement();
+        other.covers(&middle) && !other.covers(&at_start)
+    }
+
     /// Linear momentum at the half step; none without mass [kg m/s].
     pub(crate) fn momentum(&self) -> Vec3 {
         self.inertia.map_or_else(Vec3::zeros, |inertia| self.frame.velocity * inertia.mass)
+    }
+
+    /// Angular momentum about the origin at the half step, with its spin where contacts turn it; none without mass [kg m²/s].
+    pub(crate) fn angular_momentum(&self) -> Vec3 {
+        let spin = if self.turns_freely() { self.angular_momentum } else { Vec3::zeros() };
+        self.frame.origin.cross(&self.momentum()) + spin
     }
 
     pub(crate) fn clear_forces(&mut self) {

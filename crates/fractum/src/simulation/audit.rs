@@ -47,6 +47,7 @@ impl Simulation {
         self.scene.audit();
         self.keep_overlap();
         self.recorder.join_overlaps(&self.ranks);
+        self.warn_of_rigid_bodies()?;
         let at_rest = self.solver.rests();
         let found: Vec<Warning> = self.scene.noticed().map(|found| warning(&self.scene, found, at_rest)).collect();
         // Each process looks at what it computes, and all of them decide alike.
@@ -60,6 +61,17 @@ impl Simulation {
             let place = place(&self.scene, found.site);
             self.recorder.set_largest_overlap(LargestOverlap { share: found.value, place, time: found.time });
         }
+    }
+
+    /// Warns of a rigid body that has moved into another one: they do not touch each other.
+    fn warn_of_rigid_bodies(&mut self) -> Result<(), Failure> {
+        let all = self.scene.contacts.rigid_bodies();
+        let moving = all.iter().flat_map(|body| all.iter().map(move |other| (body, other)));
+        let mut moving = moving.filter(|(body, other)| body.moves() || other.moves());
+        let Some((body, other)) = moving.find(|(body, other)| body.has_entered(other)) else { return Ok(()) };
+        let text = format!("\"{}\" has moved into \"{}\": rigid bodies do not touch each other", body.name, other.name);
+        let found = Warning::new(Code::NoContact, self.instant(self.time()), text);
+        self.warn_once(found.remedy("make one of them a solid, or drive them so that they do not meet"))
     }
 
     /// Warns of an energy balance that is off, once in a run.
