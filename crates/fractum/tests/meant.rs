@@ -351,3 +351,15 @@ fn a_force_on_elements_is_shared_by_their_volume() {
         assert!((found / expected - 1.0).abs() < 0.01, "{found}, expected {expected}");
     }
 }
+
+#[test]
+fn a_name_that_means_a_body_and_a_group_of_the_mesh_is_refused() {
+    let probe = "[[probes]]\nname = \"sunk\"\ndisplacement = { group = \"y+\", along = \"y\" }\n[solver]";
+    let tool = cases()["tool"].replace("[solver]", probe);
+    for (name, is_told) in [("y+", true), ("ball", false)] {
+        let place = Workplace::new(&tool.replace("name = \"ball\"", &format!("name = \"{name}\"")));
+        let ended = place.fractum(&["check", "case.toml"]);
+        let told = ended.stderr.contains("a body and a group of the mesh have this name");
+        assert_eq!((told, ended.code), (is_told, Some(i32::from(is_told))), "{} {}", ended.stdout, ended.stderr);
+    }
+}

@@ -9,7 +9,10 @@ use fractum_scene::{Domain, Scene};
 
 use super::{Context, interfaces, liquid, rate};
 use crate::measure::ContactForce;
-use crate::model::{Body, BodyKind, BondLawKind, GroupUse, Motion, ProbeKind, Selection, SolverKind, WHOLE_MESH};
+use crate::model::{
+    Body, BodyKind, BondLawKind, BondedShape, GroupUse, Motion, PackingSource, ProbeKind, RigidShape, Selection,
+    SolverKind, WHOLE_MESH,
+};
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 
 /// Steps that a run can count without losing time to rounding.
@@ -18,6 +21,7 @@ const MOST_STEPS: f64 = 1e15;
 /// Checks what case and mesh tell by themselves.
 pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_groups(context);
+    check_names(context);
     check_particle_sets(context);
     check_time_functions(context);
     check_bonded_statics(context);
@@ -94,6 +98,44 @@ fn check_groups(context: &mut Context<'_>) {
             );
         }
         context.diagnostics.push(diagnostic);
+    }
+}
+
+/// A rigid body or one of particles must not have the name of a mesh group of something else, where supports, loads or probes name it.
+fn check_names(context: &mut Context<'_>) {
+    let (case, mesh) = (context.case, context.mesh);
+    let groups = mesh.group_names();
+    // A body that is made of the group may have its name.
+    let made_of = |kind: &BodyKind, name: &str| match kind {
+        BodyKind::Solid(_) => true,
+        BodyKind::Rigid(rigid) => matches!(&rigid.shape, RigidShape::Group { group, .. } if group.value == name),
+        BodyKind::Bonded(bonded) => match &bonded.packing {
+            PackingSource::Shape { shape, .. } => {
+                matches!(&shape.value, BondedShape::Group(group) if group.value == name)
+            }
+            PackingSource::File(_) => false,
+        },
+        BodyKind::Particles(_) => false,
+    };
+    let is_taken = |body: &Body| {
+        let name = body.name.value.as_str();
+        groups.contains(&name) && !made_of(&body.kind, name)
+    };
+    let taken: Vec<&str> =
+        case.bodies.iter().filter(|body| is_taken(body)).map(|body| body.name.value.as_str()).collect();
+    if taken.is_empty() {
+        return;
+    }
+    let mut named: Vec<&Selection> = case.supports.iter().map(|support| &support.on).collect();
+    named.extend(case.loads.iter().filter_map(|load| Some(load.kind.on()?.0)));
+    named.extend(case.probes.iter().filter_map(|probe| probe.kind.may_be_particles()));
+    named.extend(case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.on));
+    for group in named.into_iter().filter_map(|on| on.group.as_ref()) {
+        if taken.contains(&group.value.as_str()) {
+            let found = format!("= \"{}\": a body and a group of the mesh have this name", group.value);
+            let diagnostic = Diagnostic::error(&group.place, found).expected("a name that means one of both");
+            context.diagnostics.push(diagnostic.remedy("give the body another name"));
+        }
     }
 }
 
