@@ -30,6 +30,8 @@ pub(super) struct Reader {
     describe: fn(&str) -> Option<&'static KeyDoc>,
     /// By how much all lengths are larger than written: `verify.scale`.
     pub(super) scale: Scale,
+    /// Whether it is a later stage that is read, which begins from the state of the one before.
+    pub(super) is_later_stage: Cell<bool>,
     /// Parameters read so far.
     pub(super) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// Tables read from other files: name as written, contents.
@@ -62,6 +64,7 @@ impl Reader {
             folder,
             describe,
             scale: Scale(1.0),
+            is_later_stage: Cell::default(),
             parameters: RefCell::default(),
             tables: RefCell::default(),
             diagnostics: RefCell::default(),

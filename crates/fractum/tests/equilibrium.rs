@@ -349,3 +349,17 @@ fix = "z""#;
     let [first, second, third] = [at(0.945), at(0.955), at(0.965)].map(|row| row[1]);
     assert!(first < -1e3 && ((third - second) / (second - first) - 1.0).abs() < 0.01, "{first} {second} {third}");
 }
+
+#[test]
+fn an_early_end_by_a_load_that_is_never_above_zero_is_told() {
+    // The load of a bar that is pressed is negative.
+    for (along, is_told) in [("x", true), ("-x", false)] {
+        let case = BAR.replace(
+            "along = \"x\" }\n[[probes]]\nname = \"angle\"",
+            &format!("along = \"{along}\" }}\n[[probes]]\nname = \"angle\""),
+        );
+        let place = Workplace::new(&case.replace("0.4 mm*t/1 s", "-1 um*t/1 s"));
+        let told = format!("{}", run(&place, "out", "1")["warnings"]);
+        assert_eq!(told.contains("was never above zero"), is_told, "{told}");
+    }
+}

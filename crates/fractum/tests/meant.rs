@@ -327,6 +327,32 @@ fn every_plate_has_its_own_thickness() {
 }
 
 #[test]
+fn facets_of_a_load_that_lie_within_the_bodies_are_told() {
+    let mut mesh = bar();
+    let sorted = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    let outer: Vec<[u32; 3]> = mesh.triangles.iter().map(|nodes| sorted(*nodes)).collect();
+    let mut sides = mesh.tetrahedra.iter().map(|&[a, b, c, _]| sorted([a, b, c]));
+    let inner = sides.find(|side| !outer.contains(side)).unwrap();
+    let index = mesh.triangles.len() as u32;
+    mesh.triangles.push(inner);
+    mesh.triangle_tags.push(1_000_000);
+    mesh.groups.iter_mut().find(|group| group.name == "y+").unwrap().triangles.push(index);
+    let load = "[[loads]]\ngroup = \"y+\"\ntraction = { y = \"1 MPa*t/1 s\" }\n[solver]";
+    let pull = cases()["static"].replace("[solver]", load);
+    let place = Workplace::with_mesh(&pull, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let ended = place.fractum(&["check", "case.toml"]);
+    assert!(
+        ended.stdout.contains("\"y+\": 1 of its") && ended.stdout.contains("[beyond-bodies]"),
+        "{} {}",
+        ended.stdout,
+        ended.stderr
+    );
+}
+
+#[test]
 fn a_force_on_elements_is_shared_by_their_volume() {
     // Elements that grow from end to end: u = F L/(2 E A) at the free end of a bar under a force all along it.
     let graded = |mut mesh: Mesh| {

@@ -255,3 +255,19 @@ fn wrong_excavation_is_explained() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!(ended.stdout.contains("[excavated]") || ended.stderr.contains("[excavated]"), "{ended:?}");
 }
+
+#[test]
+fn a_displacement_that_begins_a_stage_elsewhere_is_told() {
+    let second = |from: &str| {
+        format!(
+            "stages = [\"pull\"]\n[[supports]]\ngroup = \"x+\"\ndisplacement = {{ x = \"{from}\" }}\nstages = [\"release\"]\n"
+        )
+    };
+    for (from, is_told) in [("5 um*(t - 1 ms)/1 ms", true), ("10 um + 5 um*(t - 1 ms)/1 ms", false)] {
+        let place = Workplace::new(&RELEASED.replace("stages = [\"pull\"]\n", &second(from)));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let told = ended.stdout.contains("leaps by -10 µm as stage \"release\" begins, from 10 µm");
+        assert_eq!((told, ended.stdout.contains("[jump]")), (is_told, is_told), "{}", ended.stdout);
+    }
+}

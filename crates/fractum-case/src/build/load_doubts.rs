@@ -131,11 +131,18 @@ fn hurried(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
         return None;
     }
     let passage = passage(case, mesh, bodies);
+    let lasts = (case.solver.end - begin) / passage;
+    let mut loads = case.loads.iter().flat_map(|load| load.kind.functions());
+    if let Some(load) = loads.find(|function| !function.value.is_zero()).filter(|_| lasts < PASSAGES) {
+        let found =
+            format!("acts during {} passages of a wave ({} each)", significant(lasts, 2), quantity(passage, "s"));
+        let note = Diagnostic::warning(Code::FastLoading, &load.place, found);
+        return Some(note.remedy("reactions are those of a blow: let it act longer, or choose kind = \"static\""));
+    }
     for motion in case.supports.iter().flat_map(|support| support.motion.iter().flatten()) {
         let Some(speed) = largest_speed(&motion.value, [begin, case.solver.end]).filter(|speed| *speed > 0.0) else {
             continue;
         };
-        let lasts = (case.solver.end - begin) / passage;
         let remedy = "reactions are those of a blow: load more slowly and longer, or choose kind = \"static\"";
         if lasts < PASSAGES {
             let found =

@@ -13,7 +13,9 @@ mod excavation;
 mod gas;
 mod gauges;
 mod heat;
+mod idle_doubts;
 mod in_situ;
+mod inner_facets;
 mod interfaces;
 mod liquid;
 mod load_doubts;
@@ -190,9 +192,9 @@ impl<'a> Context<'a> {
         let mut bonded = self.bonded(prepared)?;
         let mut parts = bodies::solid_parts(self)?;
         ties::take_out(self, &mut parts, &taken);
+        across_plane::check(self, &parts);
         self.without_mistakes()?;
         let numbering = bodies::number_nodes(self, &parts);
-        across_plane::check(self, &parts);
         let mut boundary = bodies::boundary(self, &parts, &numbering, &[]);
         let inner = interfaces::inner_facets(self, &numbering);
         boundary.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet)));
@@ -213,6 +215,7 @@ impl<'a> Context<'a> {
         let (loaded, facets) = left.as_ref().map_or((&numbering, &boundary), |(numbering, facets)| (numbering, facets));
         let bare = Surface::new(facets, &solid, &numbering.positions);
         warnings.extend(excavation::doubts(self, &parts, loaded));
+        warnings.extend(inner_facets::doubts(self, &numbering, &surface));
         let (supports, surface_supports, loads) =
             self.supports_and_loads(&solid, &parts, loaded, &bare, &boundary_of_parts)?;
         let statics = statics::statics(self, &solid, &numbering);

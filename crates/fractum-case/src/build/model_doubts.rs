@@ -7,9 +7,10 @@ use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
 use super::body_doubts::{Own, thin, unheld};
+use super::idle_doubts::{measured_in_vain, taken_at_once, unmoved};
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{coincident, meetings, missing, overlapping, undamped};
-use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, SolverKind};
+use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
 use crate::{Diagnostic, Spanned, TimeFunction};
 
 /// Poisson's ratio above which linear elements are too stiff.
@@ -21,6 +22,8 @@ const FLAT: f64 = 0.999;
 /// Instants at which a motion is looked at, and the share of its range that it may change by between two of them.
 const LOOKS: u32 = 2000;
 const LEAP: f64 = 0.2;
+/// Part of a displacement by which it may differ where a stage begins.
+const STEP: f64 = 0.01;
 
 /// Doubts about what case and mesh make together, coordinates in metres.
 pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
@@ -56,10 +59,16 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
     doubts.extend(bodies.iter().filter_map(|body| thickness(case, body)));
     doubts.extend(odd_reactions(case, mesh, &bodies));
+    doubts.extend(unmoved(case));
+    doubts.extend(measured_in_vain(case));
     let mut begin = 0.0;
+    for (before, stage) in std::iter::once(case).chain(&case.later).zip(&case.later) {
+        doubts.extend(steps_between(before, stage));
+    }
     for stage in std::iter::once(case).chain(&case.later) {
         doubts.extend(suctions(stage, mesh));
-        doubts.extend(leaps(stage, mesh, &bodies));
+        doubts.extend(leaps(stage, begin, mesh, &bodies));
+        doubts.extend(taken_at_once(stage, mesh));
         doubts.extend(doubts_of_loads(stage, begin, mesh, &bodies));
         begin = stage.solver.end;
     }
@@ -217,7 +226,7 @@ fn is_flat(mesh: &Mesh, group: &str) -> bool {
 }
 
 /// Motions that leap: displacements at any time, and velocities that begin at once where the wave of it comes near the strength.
-fn leaps(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+fn leaps(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
     if case.solver.kind != SolverKind::Explicit {
         return Vec::new();
     }
@@ -226,7 +235,7 @@ fn leaps(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
         for (axis, motion) in support.motion.iter().enumerate() {
             let Some(motion) = motion else { continue };
             match &motion.value {
-                Motion::Displacement(function) => doubts.extend(leap(case.solver.end, motion, function)),
+                Motion::Displacement(function) => doubts.extend(leap([begin, case.solver.end], motion, function)),
                 Motion::Velocity(function) if !function.depends_on_position() => {
                     let nodes = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value));
                     let strikes = |body: &&Own| {
@@ -245,12 +254,44 @@ fn leaps(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
     doubts
 }
 
+/// Displacements that begin a stage elsewhere than where those of the stage before have ended.
+fn steps_between(before: &Case, stage: &Case) -> Vec<Diagnostic> {
+    let at = before.solver.end;
+    let displaced = |motion: &Option<Spanned<Motion>>| match motion.as_ref().map(|motion| &motion.value) {
+        Some(Motion::Displacement(function)) if !function.depends_on_position() => {
+            Some(function.value(at, Vec3::zeros()))
+        }
+        _ => None,
+    };
+    let mut doubts = Vec::new();
+    for support in &stage.supports {
+        let Some(group) = support.on.group.as_ref().filter(|_| support.on.within.is_none()) else { continue };
+        let is_same =
+            |on: &Selection| on.within.is_none() && on.group.as_ref().is_some_and(|own| own.value == group.value);
+        let earlier = before.supports.iter().filter(|earlier| is_same(&earlier.on));
+        for (earlier, axis) in earlier.flat_map(|earlier| (0..3).map(move |axis| (earlier, axis))) {
+            let (Some(motion), Some(from), Some(to)) =
+                (&support.motion[axis], displaced(&earlier.motion[axis]), displaced(&support.motion[axis]))
+            else {
+                continue;
+            };
+            if (to - from).abs() > STEP * from.abs().max(to.abs()) {
+                let [way, from] = [to - from, from].map(|length| quantity(length, "m"));
+                let found = format!("leaps by {way} as stage \"{}\" begins, from {from}", stage.source.stage);
+                let note = Diagnostic::warning(Code::Jump, &motion.place, found);
+                doubts.push(note.remedy("displacements count from the start of the run: begin with the one before"));
+            }
+        }
+    }
+    doubts
+}
+
 /// A displacement that leaps.
-fn leap(end: f64, motion: &Spanned<Motion>, function: &TimeFunction) -> Option<Diagnostic> {
+fn leap([begin, end]: [f64; 2], motion: &Spanned<Motion>, function: &TimeFunction) -> Option<Diagnostic> {
     if function.depends_on_position() {
         return None;
     }
-    let at = |look: u32| end * f64::from(look) / f64::from(LOOKS);
+    let at = |look: u32| begin + (end - begin) * f64::from(look) / f64::from(LOOKS);
     let values: Vec<f64> = (0..=LOOKS).map(|look| function.value(at(look), Vec3::zeros())).collect();
     let range = values.iter().fold(0.0f64, |range, value| range.max(value.abs()));
     let look = values.windows(2).position(|pair| (pair[1] - pair[0]).abs() > LEAP * range)?;

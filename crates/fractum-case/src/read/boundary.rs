@@ -88,7 +88,8 @@ fn support(table: Table<'_>) -> Option<Support> {
         }
         let moved = components(&table, key, |table, axis| {
             let function = time_function(table, axis).spanned().given()?;
-            if key == "displacement" {
+            // A later stage begins from the displacements that there are.
+            if key == "displacement" && !table.reader.is_later_stage.get() {
                 warn_of_jump(table, &function);
             }
             Some(function.map(wrap))

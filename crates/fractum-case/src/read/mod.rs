@@ -135,6 +135,7 @@ pub fn parse_case(text: &str, path: &Path, overrides: &[(String, String)]) -> Re
     let mut cases = Vec::new();
     for (stage, mut tree) in stages::split(&reader, root) {
         remove_unknown(&mut tree, "", &mut |unknown| reader.note_unknown(unknown));
+        reader.is_later_stage.set(!cases.is_empty());
         cases.push(case(&reader, &tree, source.clone(), stage));
     }
     let case = stages::joined(&reader, cases);

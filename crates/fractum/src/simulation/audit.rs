@@ -93,6 +93,7 @@ impl Simulation {
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
         self.tell_rates()?;
+        self.warn_of_idle_stop()?;
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
             (end, _) => end,
@@ -179,6 +180,19 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+
+    /// Warns of an early end by a probe that was never above zero, so that it had no largest value to fall from.
+    fn warn_of_idle_stop(&mut self) -> Result<(), Failure> {
+        let Some(stop) = &self.case.solver.stop_when else { return Ok(()) };
+        let values = &self.recorder.state().series[stop.probe];
+        if values.iter().any(|value| *value > 0.0) || !values.iter().any(|value| *value < 0.0) {
+            return Ok(());
+        }
+        let name = &self.case.probes[stop.probe].name.value;
+        let text = format!("\"{name}\" was never above zero, and has not fallen from a largest value");
+        let found = Warning::new(Code::NoEffect, "solver.stop_when", text);
+        self.warn(found.remedy("measure it in the other direction, such as along = \"-y\""))
     }
 
     /// Warns of the first of a kind.
@@ -273,10 +287,10 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
         Notice::ChangeOfStep => (
             Code::ChangeOfStep,
             format!(
-                "changes of the time step, or of small strains to corotational ones, have brought or taken {} of the energy",
+                "changes of the time step, a load that began at once, or a body that changed to corotational strains have brought or taken {} of the energy",
                 percent(*value)
             ),
-            "set kinematics = \"corotational\" on bodies that turn, or take a smaller solver.safety",
+            "let loads begin by a ramp, set kinematics = \"corotational\" on bodies that turn, or take a smaller solver.safety",
         ),
         Notice::Gained => (
             Code::EnergyGained,
