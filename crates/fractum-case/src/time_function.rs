@@ -196,6 +196,13 @@ impl TimeFunction {
         None
     }
 
+    /// The first instant within a run at which the value is negative [s], and that value; where it is the same everywhere.
+    pub fn negative(&self, end: f64) -> Option<(f64, f64)> {
+        let times = if self.depends_on_time() { LOOKS } else { 0 };
+        let looks = (0..=times).map(|look| end * (look as f64 / LOOKS as f64));
+        looks.map(|t| (t, self.value(t, Vec3::zeros()))).find(|(_, value)| *value < 0.0)
+    }
+
     /// How much later than another function it is [s]; none if it is a function of its own.
     pub fn delay(&self) -> Option<f64> {
         match self {

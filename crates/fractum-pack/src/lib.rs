@@ -31,6 +31,7 @@ mod regular;
 mod relax;
 mod stl;
 mod surface;
+mod wall_areas;
 
 pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};

@@ -91,6 +91,11 @@ impl ClosedSurface {
         self.area
     }
 
+    /// Visits the corners of its triangles [m], counter-clockwise from outside.
+    pub(crate) fn visit_triangles(&self, mut visit: impl FnMut([Vec3; 3])) {
+        self.triangles.iter().for_each(|corners| visit(corners.map(|corner| self.points[corner as usize])));
+    }
+
     /// Lower and upper corner of the bounding box [m].
     pub fn bounds(&self) -> (Vec3, Vec3) {
         let first = self.points[0];

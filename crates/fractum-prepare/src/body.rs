@@ -2,6 +2,7 @@
 
 use fractum_dem::{AnyBondLaw, Particles};
 use fractum_math::Vec3;
+use fractum_pack::Domain;
 use fractum_scene::BondFracture;
 
 /// The particles of a bonded or loose body: packed or read, bonded and calibrated.
@@ -17,6 +18,8 @@ pub struct PreparedBody {
     pub shares: Vec<f64>,
     /// Sets of particles that touch the walls of the shape, by name.
     pub walls: Vec<(String, Vec<u32>)>,
+    /// The shape that it was packed into, whose walls these are.
+    pub domain: Option<Domain>,
     /// How far each particle is from touching the walls of the shape exactly [m]; empty where that does not matter.
     pub shift_to_walls: Vec<Vec3>,
     /// Volume fraction of the interior of its packing.

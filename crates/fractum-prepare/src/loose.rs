@@ -46,6 +46,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
         law,
         shares,
         walls,
+        domain: None,
         shift_to_walls: Vec::new(),
         fraction: 1.0,
         fracture: None,

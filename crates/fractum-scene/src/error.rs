@@ -49,6 +49,14 @@ pub enum SceneError {
         /// Axis, x, y or z.
         axis: char,
     },
+    /// A load that does not grow in proportion to time.
+    #[error(
+        "a load along {axis} does not grow in proportion to time, as it must on a bonded body at rest; give a number times t"
+    )]
+    LoadNotProportional {
+        /// Axis, x, y or z.
+        axis: char,
+    },
     /// A scene that cannot be solved from break to break.
     #[error("one bonded body and nothing else can be solved from break to break")]
     OneBondedBody,

@@ -268,6 +268,9 @@ impl Plan {
         }
         for load in case.loads.iter().filter(|load| delay(load).is_none()) {
             let on = match load.kind.on() {
+                Some((on, GroupUse::Facets)) if case.particle_group(on.group_name()).is_some() => {
+                    format!("{}, by the part of the walls that each particle shows", on.label())
+                }
                 Some((on, GroupUse::Facets)) => facets_of(mesh, on, scene.solid.is_plane().then_some(&thickness)),
                 Some((on, _)) => on.label().to_owned(),
                 None => "everything".to_owned(),
@@ -305,9 +308,7 @@ impl Plan {
         let pushed = !case.loads.is_empty() || scene.gas().is_some();
         if scene.supports().count() == 0 && scene.bonded.held_count() == 0 && !pushed {
             let driven = |body: &&Body| match &body.kind {
-                BodyKind::Rigid(rigid) => {
-                    rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force).any(Option::is_some)
-                }
+                BodyKind::Rigid(rigid) => rigid.functions().next().is_some(),
                 _ => false,
             };
             let driven: Vec<&str> = case.bodies.iter().filter(driven).map(|body| body.name.value.as_str()).collect();

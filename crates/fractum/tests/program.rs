@@ -30,6 +30,8 @@ mod ranks_mesh;
 mod report;
 mod results_folder;
 mod resume;
+mod servo;
+mod shown;
 mod stages;
 mod static_frames;
 mod study;

@@ -3,6 +3,7 @@
 use fractum_dem::Particles;
 use fractum_math::Vec3;
 use fractum_output::warning::Code;
+use fractum_pack::Domain;
 use fractum_prepare::PreparedBody;
 use fractum_scene::coupling::Attachment;
 use fractum_scene::{Bonded, BondedPart, FlatFaces, Support};
@@ -18,6 +19,8 @@ pub(super) struct ParticleSets {
     body: usize,
     /// Names and particles, ascending; the first is the whole body.
     sets: Vec<(String, Vec<u32>)>,
+    /// The shape that it was packed into, with the number of its walls: the sets after the first.
+    walls: Option<(Domain, usize)>,
 }
 
 impl Context<'_> {
@@ -34,6 +37,7 @@ impl Context<'_> {
             let count = made.particles.len() as u32;
             set_initial_velocity(&mut made.particles, initial_velocity);
             self.scatter_particles(&body.name.value, &case.materials[material], &mut made);
+            let domain = made.domain.take().map(|domain| (domain, made.walls.len()));
             let mut sets = vec![(String::new(), (start..start + count).collect::<Vec<u32>>())];
             sets.extend(made.walls.into_iter().map(|(name, set)| (name, set.iter().map(|i| i + start).collect())));
             for (name, condition) in groups {
@@ -48,7 +52,7 @@ impl Context<'_> {
                 }
                 sets.push((name.value.clone(), set));
             }
-            self.particle_sets.push(ParticleSets { body: index, sets });
+            self.particle_sets.push(ParticleSets { body: index, sets, walls: domain });
             self.flat_faces.push(flat_faces(&case.materials[material], made.shift_to_walls));
             parts.push(BondedPart {
                 name: body.name.value.clone(),
@@ -83,6 +87,13 @@ impl Context<'_> {
     /// Whether a name is that of a bonded body or of one of its sets.
     pub(super) fn names_particles(&self, on: &Selection) -> bool {
         self.case.particle_group(on.group_name()).is_some()
+    }
+
+    /// The shape that a body was packed into, and the particles at each of its walls.
+    pub(super) fn walls_of(&self, body: usize) -> Option<(Domain, Vec<(String, Vec<u32>)>)> {
+        let own = self.particle_sets.iter().find(|sets| sets.body == body)?;
+        let (domain, count) = own.walls.as_ref()?;
+        Some((domain.clone(), own.sets[1..=*count].to_vec()))
     }
 
     /// The particles that are meant, of the group that names them.

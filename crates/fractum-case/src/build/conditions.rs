@@ -70,8 +70,18 @@ impl Context<'_> {
                         }
                     });
                 }
-                // Particles have no facets: refused before.
-                (LoadKind::Traction { .. } | LoadKind::Pressure { .. }, LoadedPoints::Particles(_)) => {}
+                (LoadKind::Traction { on, traction }, LoadedPoints::Particles(bonded)) => {
+                    let shown = self.shown_areas(on, bonded);
+                    let shares: Vec<(u32, f64)> = shown.iter().map(|own| (own.particle, own.size)).collect();
+                    push_nodal(&mut loads, &shares, traction);
+                }
+                (LoadKind::Pressure { on, pressure, .. }, LoadedPoints::Particles(bonded)) => {
+                    let shown = self.shown_areas(on, bonded);
+                    for axis in 0..3 {
+                        let points = shown.iter().map(|own| (own.particle, -own.vector[axis])).collect();
+                        loads.push(Load::Nodal(NodalForce { points, axis, value: function(&pressure.value) }));
+                    }
+                }
             }
         }
         loads

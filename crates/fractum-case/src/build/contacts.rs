@@ -7,16 +7,20 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{
     ContactMaterial, ContactParameters, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia,
-    NodesOnShape, Overlap, OverlapWith, RigidBody, Scene, Shape, SolidSurface, pieces,
+    NodesOnShape, Overlap, OverlapWith, RigidBody, Scene, Servo, ServoArea, Shape, SolidSurface, pieces,
 };
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape};
+use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape, ServoForce};
 use crate::{Diagnostic, Spanned};
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
 const DEEP: f64 = 1e-6;
+
+/// Cosines of the angles between planes that face each other, and those across, beyond which they are askew.
+const OPPOSITE: f64 = -1.0 + 1e-9;
+const ACROSS: f64 = 1e-6;
 
 /// What becomes of overlaps that are taken as they stand.
 const NO_FORCE: &str = "they give no force until they have parted";
@@ -275,7 +279,52 @@ pub(super) fn rigid_bodies(context: &mut Context<'_>, facets: Vec<PreparedFacets
             rigid_bodies.push(rigid_body);
         }
     }
+    for body in &case.bodies {
+        let BodyKind::Rigid(rigid) = &body.kind else { continue };
+        if let Some(servo) = &rigid.servo {
+            let scene_servo = scene_servo(context, servo, &rigid_bodies);
+            let own = rigid_bodies.iter_mut().find(|own| own.name == body.name.value);
+            if let (Some(scene_servo), Some(own)) = (scene_servo, own) {
+                own.along[servo.axis] = Drive::Servo(scene_servo);
+            }
+        }
+    }
     rigid_bodies
+}
+
+/// A servo as the scene takes it; an error where it names what is no pair of planes.
+fn scene_servo(context: &mut Context<'_>, servo: &model::Servo, bodies: &[RigidBody]) -> Option<Servo> {
+    let area = match &servo.force {
+        ServoForce::Force(_) => None,
+        ServoForce::Pressure { area: model::ServoArea::Given(area), .. } => Some(ServoArea::Given(*area)),
+        ServoForce::Pressure { area: model::ServoArea::Between(names), .. } => {
+            let plane = |name: &Spanned<String>| {
+                let of = |body: &RigidBody| matches!(body.form, Form::Shape { shape: Shape::HalfSpace, .. });
+                bodies.iter().position(|body| body.name == name.value && of(body))
+            };
+            let mut planes = [0; 4];
+            for (place, name) in planes.iter_mut().zip(names) {
+                let Some(found) = plane(name) else {
+                    let found = format!("= \"{}\"", name.value);
+                    context.error(&name.place, found, "a rigid body with shape = \"plane\"");
+                    return None;
+                };
+                *place = found;
+            }
+            let normal = |plane: usize| bodies[plane].frame.to_space(&Vec3::z());
+            let face = |pair: usize| normal(planes[2 * pair]).dot(&normal(planes[2 * pair + 1])) < OPPOSITE;
+            let across = |pair: usize| normal(planes[2 * pair])[servo.axis].abs() < ACROSS;
+            let crossed = normal(planes[0]).dot(&normal(planes[2])).abs() < ACROSS;
+            if !(face(0) && face(1) && across(0) && across(1) && crossed) {
+                let expected = "two pairs of planes that face each other, at right angles to one another and along the direction of servo";
+                context.error(&names[0].place, "begins no list of such planes", expected);
+                return None;
+            }
+            Some(ServoArea::Between { planes, now: 0.0 })
+        }
+    };
+    let target = function(&servo.function().value);
+    Some(Servo { sign: servo.sign, target, area, speed: servo.speed, reach: servo.slows_at })
 }
 
 fn form(

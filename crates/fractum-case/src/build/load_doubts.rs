@@ -85,7 +85,7 @@ pub(super) fn odd_reactions(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Dia
 fn functions(case: &Case) -> Vec<(&Place, &TimeFunction)> {
     let loads = case.loads.iter().flat_map(|load| load.kind.functions());
     let rigid = case.bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Rigid(rigid) => Some(rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force).flatten()),
+        BodyKind::Rigid(rigid) => Some(rigid.functions()),
         _ => None,
     });
     let heat = case.flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| condition.kind.function());

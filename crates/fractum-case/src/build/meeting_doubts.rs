@@ -162,7 +162,7 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
         BodyKind::Solid(solid) => !solid.damage && solid.initial_velocity.iter().all(Option::is_none),
         BodyKind::Rigid(rigid) => {
             let has_facets = matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. });
-            !(has_facets || rigid.inside || rigid.free_rotation || rigid.free.contains(&true))
+            !(has_facets || rigid.inside || rigid.free_rotation || rigid.servo.is_some() || rigid.free.contains(&true))
         }
         _ => false,
     };
@@ -194,8 +194,10 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
 
 /// Where a rigid body that does not turn is during the run, from where it starts [m]; none where that depends on forces, or it stays.
 fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
-    let pushed =
-        rigid.force.iter().any(Option::is_some) || rigid.free_rotation || rigid.spin.iter().any(Option::is_some);
+    let pushed = rigid.servo.is_some()
+        || rigid.force.iter().any(Option::is_some)
+        || rigid.free_rotation
+        || rigid.spin.iter().any(Option::is_some);
     if pushed || rigid.inside {
         return None;
     }

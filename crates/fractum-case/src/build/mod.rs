@@ -28,6 +28,7 @@ mod precheck;
 mod probes;
 mod rate;
 mod refine;
+mod shown_areas;
 mod statics;
 mod strength;
 mod subcycling;

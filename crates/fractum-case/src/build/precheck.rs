@@ -10,7 +10,7 @@ use fractum_scene::{Domain, Scene};
 use super::{Context, interfaces, liquid, rate};
 use crate::measure::ContactForce;
 use crate::model::{
-    Body, BodyKind, BondLawKind, BondedShape, GroupUse, Motion, PackingSource, ProbeKind, RigidShape, Selection,
+    Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape, Selection,
     SolverKind, WHOLE_MESH,
 };
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
@@ -156,9 +156,23 @@ fn check_particle_sets(context: &mut Context<'_>) {
         match load.kind.on() {
             Some((on, GroupUse::Facets)) if context.names_particles(on) => {
                 let Some(group) = &on.group else { continue };
-                let diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value));
-                let diagnostic = diagnostic.expected("a mesh group of facets; particles have none");
-                context.diagnostics.push(diagnostic.remedy("use force, which is shared over the set"));
+                let body = case.particle_group(&group.value).map(|(body, _)| &case.bodies[body].kind);
+                let found = format!("= \"{}\"", group.value);
+                if matches!(body, Some(BodyKind::Particles(_))) {
+                    let diagnostic = Diagnostic::error(&group.place, found);
+                    let expected =
+                        "a mesh group of facets, or particles of a bonded body; loose particles show no area";
+                    let diagnostic = diagnostic.expected(expected);
+                    context.diagnostics.push(diagnostic.remedy("use force, or a rigid body with servo"));
+                    continue;
+                }
+                if let LoadKind::Pressure { in_cracks, detonation, .. } = &load.kind
+                    && (in_cracks.is_some() || detonation.is_some())
+                {
+                    let what = if in_cracks.is_some() { "in_cracks" } else { "detonation" };
+                    context.error(&group.place, format!("{found} with {what}"), "a mesh group of facets");
+                }
+                named.push(on);
             }
             Some((on, _)) => named.push(on),
             None => {}
@@ -210,8 +224,14 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
     for body in &case.bodies {
         if let BodyKind::Rigid(rigid) = &body.kind {
-            let all = rigid.velocity.iter().chain(&rigid.spin).chain(&rigid.force);
-            functions.extend(all.flatten().map(|f| (f, None)));
+            functions.extend(rigid.functions().map(|f| (f, None)));
+            if let Some(servo) = &rigid.servo {
+                let (function, end) = (servo.function(), case.solver.end);
+                if let Some((time, value)) = function.value.negative(end) {
+                    let found = format!("is {value:.4e} at t = {}", quantity(time, "s"));
+                    context.error(&function.place, found, "0 or more: contacts cannot pull; turn servo.along instead");
+                }
+            }
         }
     }
     for condition in case.flows.heat.iter().flat_map(|heat| &heat.conditions) {
@@ -261,10 +281,6 @@ fn check_bonded_statics(context: &mut Context<'_>) {
     if options.control.is_some() || solver.step.is_some() {
         let expected = "no control and no step: the load goes straight from break to break";
         context.error(&place, found("solver.control or solver.step"), expected);
-    }
-    if !context.case.loads.is_empty() {
-        let expected = "supports only, which move in proportion to time; or kind = \"explicit\"";
-        context.error(&place, found("[[loads]]"), expected);
     }
     if body.initial_velocity.iter().any(Option::is_some) {
         context.error(&place, found("initial_velocity"), "a body at rest; or kind = \"explicit\"");

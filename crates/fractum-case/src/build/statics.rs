@@ -160,7 +160,9 @@ fn place_of_solver(context: &Context<'_>) -> Place {
 pub fn may_rest(body: &Body) -> bool {
     match &body.kind {
         BodyKind::Solid(_) => true,
-        BodyKind::Rigid(rigid) => rigid.mass.is_none() && rigid.spin.iter().all(Option::is_none) && !has_walls(body),
+        BodyKind::Rigid(rigid) => {
+            rigid.mass.is_none() && rigid.servo.is_none() && rigid.spin.iter().all(Option::is_none) && !has_walls(body)
+        }
         BodyKind::Bonded(_) | BodyKind::Particles(_) => false,
     }
 }

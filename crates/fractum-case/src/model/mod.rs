@@ -49,7 +49,7 @@ pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, load_of};
 pub use refine::{RefineZone, Rows};
-pub use rigid::{RigidBody, RigidShape};
+pub use rigid::{RigidBody, RigidShape, Servo, ServoArea, ServoForce};
 pub use scatter::{Distribution, Reference, Scatter, Weibull};
 pub use solver::{
     AskedAccuracy, Control, InitialOverlap, ModesOptions, Opening, Solver, SolverKind, StaticOptions, StopWhen,

@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use fractum_scene::ContactParameters;
 
 use super::{Components, FileContent};
-use crate::{Field, Spanned};
+use crate::{Field, Spanned, TimeFunction};
 
 /// A rigid body.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,8 +29,65 @@ pub struct RigidBody {
     pub mass: Option<f64>,
     /// Force on it [N] along its free axes.
     pub force: Components,
+    /// How it presses with a given force.
+    pub servo: Option<Servo>,
     /// Velocity [m/s] at the start along its free axes; `None` = at rest.
     pub initial_velocity: [Option<Field>; 3],
+}
+
+/// How a rigid body presses along an axis with a given force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Servo {
+    /// The axis.
+    pub axis: usize,
+    /// Direction along it: 1 or -1.
+    pub sign: f64,
+    /// Force or pressure.
+    pub force: ServoForce,
+    /// Largest speed [m/s], > 0.
+    pub speed: f64,
+    /// Share of the force that is missing where it slows down, above 0 to 1.
+    pub slows_at: f64,
+}
+
+/// What a servo presses with.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ServoForce {
+    /// A force [N].
+    Force(Spanned<TimeFunction>),
+    /// A pressure.
+    Pressure {
+        /// The pressure [Pa].
+        pressure: Spanned<TimeFunction>,
+        /// What it acts on.
+        area: ServoArea,
+    },
+}
+
+/// Area that the pressure of a servo acts on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ServoArea {
+    /// This one [m²], > 0.
+    Given(f64),
+    /// That between two pairs of opposite rigid planes.
+    Between([Spanned<String>; 4]),
+}
+
+impl Servo {
+    /// Its force or pressure over time.
+    pub fn function(&self) -> &Spanned<TimeFunction> {
+        match &self.force {
+            ServoForce::Force(function) | ServoForce::Pressure { pressure: function, .. } => function,
+        }
+    }
+}
+
+impl RigidBody {
+    /// Its functions of time.
+    pub fn functions(&self) -> impl Iterator<Item = &Spanned<TimeFunction>> {
+        let components = self.velocity.iter().chain(&self.spin).chain(&self.force).flatten();
+        components.chain(self.servo.iter().map(Servo::function))
+    }
 }
 
 /// Shapes of rigid bodies.

@@ -30,6 +30,7 @@ mod ratios;
 mod refine;
 mod rigid;
 mod scatter;
+mod servo;
 mod solver;
 mod stages;
 mod table_file;

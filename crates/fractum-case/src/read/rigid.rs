@@ -5,7 +5,7 @@ use fractum_math::Vec3;
 use super::bonded::file;
 use super::boundary::fixed_axes;
 use super::time_functions::time_function;
-use super::{materials, unit};
+use super::{materials, servo, unit};
 use crate::Diagnostic;
 use crate::model::{Material, RigidBody, RigidShape};
 use crate::reader::Table;
@@ -64,6 +64,7 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Op
         }
     };
     let initial_velocity = initial_velocity(table);
+    let servo = servo::servo(table, shape.as_ref());
     let rigid = RigidBody {
         shape: shape?,
         inside,
@@ -75,6 +76,7 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Op
         free_rotation,
         mass: mass?,
         force: force?,
+        servo: servo?,
         initial_velocity: initial_velocity?,
     };
     moves_one_way(table, &rigid).then_some(rigid)
@@ -87,6 +89,13 @@ fn moves_one_way(table: &Table<'_>, rigid: &RigidBody) -> bool {
         table.reader.note(Diagnostic::error(&table.place_below(&key), found).expected(expected));
         fits = false;
     };
+    if let Some(servo) = &rigid.servo {
+        let (velocity, force) = (rigid.velocity[servo.axis].is_some(), rigid.force[servo.axis].is_some());
+        let thrown = rigid.initial_velocity[servo.axis].is_some();
+        let taken =
+            [("velocity", velocity), ("force", force), ("initial_velocity", thrown), ("free", rigid.free[servo.axis])];
+        servo::clash(servo, &taken, &mut clash);
+    }
     for (axis, name) in AXES.iter().enumerate() {
         if rigid.free[axis] && rigid.velocity[axis].is_some() {
             clash(format!("velocity.{name}"), "prescribes what free releases", "one of the two");

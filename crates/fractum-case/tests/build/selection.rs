@@ -175,6 +175,7 @@ step = "0.1 us"
         law: BeamSection::new(70e9, 1.0).unwrap().into(),
         shares: Vec::new(),
         walls: Vec::new(),
+        domain: None,
         shift_to_walls: Vec::new(),
         fraction: 0.6,
         fracture: None,

@@ -300,6 +300,7 @@ end = "1 ms"
             law: BeamSection { radius: 0.6e-3, young_modulus: 30e9, poisson_ratio: 0.2 }.into(),
             shares: Vec::new(),
             walls: Vec::new(),
+            domain: None,
             shift_to_walls: Vec::new(),
             fraction: 0.6,
             fracture: Some(fracture),

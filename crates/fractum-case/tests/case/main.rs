@@ -7,6 +7,7 @@ mod line;
 mod mistakes;
 mod reading;
 mod robustness;
+mod servo;
 
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@ use fractum_case::{Severity, read_case};
 use crate::{SMALL, folder, parse};
 
 /// Everything wrong with `text`, each without the name of the file.
-fn mistakes(text: &str) -> Vec<String> {
+pub(crate) fn mistakes(text: &str) -> Vec<String> {
     let errors = parse(text, &[]).expect_err(text);
     let file = format!("{}:", folder().join("case.toml").display());
     let errors = errors.0.iter().filter(|found| found.severity == Severity::Error);

@@ -23,6 +23,8 @@ const FIRST: f64 = 0.01;
 pub struct StaticBody {
     lattice: Lattice,
     supports: LatticeSupports,
+    /// Forces from outside on every particle, in scaled variables; none where nothing is loaded.
+    loads: Vec<Dof6>,
     iterate: Iterate,
     tolerance: Tolerance,
     /// Square of the support reactions at the first equilibrium: what unbalanced forces are compared with.
@@ -67,13 +69,30 @@ impl StaticBody {
         guess: &[Dof6],
         tolerance: Tolerance,
     ) -> Result<Self, DemError> {
+        StaticBody::under_loads(lattice, supports, &[], guess, tolerance)
+    }
+
+    /// [`StaticBody::new`] under forces from outside too.
+    ///
+    /// - `loads`: forces [N] and moments [N m] on every particle; empty where there are none
+    ///
+    /// # Errors
+    /// As [`StaticBody::new`].
+    pub fn under_loads(
+        lattice: Lattice,
+        supports: LatticeSupports,
+        loads: &[Dof6],
+        guess: &[Dof6],
+        tolerance: Tolerance,
+    ) -> Result<Self, DemError> {
         // The first equilibrium tells the first break, and is compared with theory.
         let first = Tolerance { residual: FIRST * tolerance.residual, ..tolerance };
-        let rest = lattice.solve(&supports, None, guess, first)?;
+        let rest = lattice.solve(&supports, (!loads.is_empty()).then_some(loads), guess, first)?;
         let x: Vec<Dof6> = rest.state.iter().map(|u| lattice.rescale(u, lattice.scale())).collect();
         let n = x.len();
         let mut body = StaticBody {
             iterate: Iterate::new(&lattice, x, vec![[0.0; 6]; n]),
+            loads: loads.iter().map(|load| lattice.rescale(load, 1.0 / lattice.scale())).collect(),
             lattice,
             supports,
             tolerance,
@@ -87,6 +106,7 @@ impl StaticBody {
             let held = |d: &usize| body.supports.fixed[i] >> d & 1 == 1;
             body.reference += (0..6).filter(held).map(|d| force[d] * force[d]).sum::<f64>();
         }
+        body.reference += body.loads.iter().map(|load| dot(load, load)).sum::<f64>();
         body.refresh();
         Ok(body)
     }
@@ -96,6 +116,24 @@ impl StaticBody {
         let Iterate { x, r, .. } = &mut self.iterate;
         self.lattice.apply(x, &self.supports.fixed, r);
         r.iter_mut().for_each(|r| *r = r.map(|v| -v));
+        for ((r, load), fixed) in r.iter_mut().zip(&self.loads).zip(&self.supports.fixed) {
+            (0..6).filter(|d| fixed >> d & 1 == 0).for_each(|d| r[d] += load[d]);
+        }
+    }
+
+    /// Force from outside on a particle, in scaled variables.
+    fn load(&self, particle: usize) -> Dof6 {
+        self.loads.get(particle).copied().unwrap_or_default()
+    }
+
+    /// Work of the forces from outside on the displacements, at their full size all the way [J].
+    pub fn work_of_loads(&self) -> f64 {
+        self.loads.iter().zip(&self.iterate.x).map(|(load, x)| dot(load, x)).sum()
+    }
+
+    /// Whether forces from outside act.
+    pub fn is_loaded(&self) -> bool {
+        !self.loads.is_empty()
     }
 
     /// Breaks a bond; equilibrium is lost until [`StaticBody::solve`].
@@ -107,6 +145,7 @@ impl StaticBody {
         self.loosen(bond);
         for mut i in ends {
             while self.supports.fixed[i] == 0
+                && self.load(i) == [0.0; 6]
                 && let Some((last, next)) = self.lattice.last_bond(i)
             {
                 self.loosen(last);
@@ -122,6 +161,8 @@ impl StaticBody {
         let k = self.lattice.stiffness();
         for i in ends {
             let mut force = self.lattice.row(i, &self.iterate.x, &k);
+            let load = self.load(i);
+            (0..6).for_each(|d| force[d] -= load[d]);
             clear(&mut force, self.supports.fixed[i]);
             self.iterate.r[i] = force.map(|v| -v);
             // Recomputed and not subtracted, so that a particle without bonds has exactly none.
@@ -149,9 +190,10 @@ impl StaticBody {
     pub fn energy(&self) -> f64 {
         let Iterate { x, r, .. } = &self.iterate;
         let k = self.lattice.stiffness();
-        // Free forces are −r; those of supports are computed where there are supports.
+        // Free forces are those from outside less r; those of supports are computed where there are supports.
         let work = |i: usize| {
-            let mut force = r[i].map(|v| -v);
+            let load = self.load(i);
+            let mut force: Dof6 = std::array::from_fn(|d| load[d] - r[i][d]);
             if self.supports.fixed[i] != 0 {
                 let row = self.lattice.row(i, x, &k);
                 (0..6).filter(|d| self.supports.fixed[i] >> d & 1 == 1).for_each(|d| force[d] = row[d]);

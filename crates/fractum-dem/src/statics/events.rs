@@ -146,6 +146,22 @@ impl QuasiStatic {
         guess: &[Dof6],
         what: &Breaking<'_>,
     ) -> Result<Self, DemError> {
+        QuasiStatic::under_loads(lattice, supports, &[], guess, what)
+    }
+
+    /// [`QuasiStatic::new`] under forces from outside, which grow with the supports.
+    ///
+    /// - `loads`: at load factor one on every particle; empty where there are none
+    ///
+    /// # Errors
+    /// As [`QuasiStatic::new`].
+    pub fn under_loads(
+        lattice: Lattice,
+        supports: LatticeSupports,
+        loads: &[Dof6],
+        guess: &[Dof6],
+        what: &Breaking<'_>,
+    ) -> Result<Self, DemError> {
         let graph = BondGraph::new(lattice.len(), what.pairs);
         let mut search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
         search.set_strength_factors(what.strength_factors, &graph);
@@ -153,7 +169,7 @@ impl QuasiStatic {
         Ok(QuasiStatic {
             graph,
             search,
-            body: StaticBody::new(lattice, supports, guess, what.tolerance)?,
+            body: StaticBody::under_loads(lattice, supports, loads, guess, what.tolerance)?,
             area,
             displacement: what.displacement,
             batch: what.batch,

@@ -80,6 +80,7 @@ fn with_interfaces(
         law: own.law.into(),
         shares,
         walls: sample.packing.walls.clone(),
+        domain: Some(sample.packing.domain.clone()),
         shift_to_walls: sample.packing.shift_to_walls(),
         fraction: sample.fraction,
         fracture: own.law.can_fail().then_some(fracture),

@@ -231,12 +231,13 @@ impl Bonded {
         Ok(())
     }
 
-    /// Whether all supports move in proportion to time until `end` [s].
+    /// Whether all supports and loads grow in proportion to time until `end` [s].
     ///
     /// # Errors
-    /// [`SceneError::NotProportional`] with the first that does not.
+    /// [`SceneError::NotProportional`], [`SceneError::LoadNotProportional`] with the first that does not.
     pub fn check_proportional(&self, end: f64) -> Result<(), SceneError> {
-        self.supports.proportional(&self.reference, end).map(|_| ())
+        self.supports.proportional(&self.reference, end)?;
+        self.loads.proportional(self, &self.particles.mass, end).map(|_| ())
     }
 
     /// Damps the highest frequencies by the scheme of Tchamwa and Wielgosz.

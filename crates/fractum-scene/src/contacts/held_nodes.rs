@@ -180,7 +180,7 @@ impl NodesOnShape {
                 (c.damping, c.friction) = (c.damping + stopped + stops, slid + slides);
                 c.lever = lever;
                 if let Some(body) = &mut body {
-                    body.push(&-force, &Vec3::zeros(), &place);
+                    body.push(&-force, &Vec3::zeros(), &place, 0.0);
                 }
             }
             work += Work::contact(0.0, c.friction, c.damping);

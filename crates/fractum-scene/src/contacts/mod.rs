@@ -12,6 +12,7 @@ mod node_contacts;
 mod nodes_on_shape;
 mod nodes_on_surface;
 mod rigid_body;
+mod servo;
 mod solid_surface;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
@@ -30,6 +31,7 @@ pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;
 pub use nodes_on_shape::NodesOnShape;
 pub use rigid_body::{Drive, Form, Inertia, RigidBody};
+pub use servo::{Servo, ServoArea};
 pub use solid_surface::SolidSurface;
 
 use crate::bonded::Bonded;
@@ -272,7 +274,7 @@ impl Contacts {
             rigid_body.clear_forces();
             for touch in contacts.touches() {
                 let place = felt.position[touch.sphere as usize] + touch.offset;
-                rigid_body.push(&-touch.force, &-touch.couple, &place);
+                rigid_body.push(&-touch.force, &-touch.couple, &place, mass[touch.sphere as usize]);
             }
         }
         for ground in solids {
@@ -316,6 +318,7 @@ impl Contacts {
     pub(crate) fn move_bodies(&mut self, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
         let mut work = HalfSteps::default();
         let gravity = if self.rigid_bodies.is_empty() { Vec3::zeros() } else { self.gravity(time) };
+        RigidBody::find_servo_areas(&mut self.rigid_bodies);
         for rigid_body in &mut self.rigid_bodies {
             work += rigid_body.advance(time, dt_before, dt_after, &gravity);
         }

@@ -141,7 +141,7 @@ impl Contacts {
                 |solid: &Solid, debris: &Debris, node: u32| debris.wall_law(node, solid.mass[node as usize], surface);
             work += nodes.add_forces(&rigid_body.ground(), solid, debris, law, dt);
             for (touch, place, node) in nodes.touches() {
-                rigid_body.push(&-touch.force, &-touch.couple, &place);
+                rigid_body.push(&-touch.force, &-touch.couple, &place, solid.mass[node as usize]);
                 let mobility = 1.0 / solid.mass[node as usize];
                 fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
             }

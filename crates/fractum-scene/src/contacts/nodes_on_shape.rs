@@ -233,7 +233,7 @@ impl NodesOnShape {
             solid.force[i] += c.force;
             debris.add_torque(c.node, c.arm.cross(&c.force) + c.couple);
             if let Some(rigid_body) = &mut rigid_body {
-                rigid_body.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm));
+                rigid_body.push(&-c.force, &-c.couple, &(solid.position(i) + c.arm), solid.mass[i]);
             }
             work += Work::contact(c.stored, c.friction, c.damping);
         }

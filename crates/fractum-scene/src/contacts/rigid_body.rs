@@ -5,6 +5,7 @@ use fractum_contact::{FacetMesh, Frame, Shape, Surface};
 use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
+use super::servo::{Servo, ServoArea, ServoStep};
 use crate::time_function::TimeFunction;
 
 /// What a rigid body looks like, in its own axes.
@@ -33,6 +34,8 @@ pub enum Drive {
     Velocity(TimeFunction),
     /// Freely, under contacts, gravity and a force [N] over time; for translations only.
     Force(TimeFunction),
+    /// So that its contacts press with a given force; for translations only.
+    Servo(Servo),
     /// Freely, under contacts and gravity.
     Free,
     /// Not at all.
@@ -72,6 +75,8 @@ pub struct RigidBody {
     angular_momentum: Vec3,
     force: Vec3,
     moment: Vec3,
+    /// Mass of what touches it [kg].
+    touched: f64,
 }
 
 impl std::fmt::Debug for RigidBody {
@@ -105,6 +110,7 @@ impl RigidBody {
             angular_momentum: Vec3::zeros(),
             force: Vec3::zeros(),
             moment: Vec3::zeros(),
+            touched: 0.0,
         }
     }
 
@@ -188,12 +194,15 @@ impl RigidBody {
     }
 
     pub(crate) fn clear_forces(&mut self) {
-        (self.force, self.moment) = (Vec3::zeros(), Vec3::zeros());
+        (self.force, self.moment, self.touched) = (Vec3::zeros(), Vec3::zeros(), 0.0);
     }
 
     /// Takes the force and couple of a contact at a place in space.
-    pub(crate) fn push(&mut self, force: &Vec3, couple: &Vec3, place: &Vec3) {
+    ///
+    /// - `mass`: that of what touches it [kg]
+    pub(crate) fn push(&mut self, force: &Vec3, couple: &Vec3, place: &Vec3, mass: f64) {
         self.force += force;
+        self.touched += mass;
         self.moment += (place - self.frame.origin).cross(force) + couple;
     }
 
@@ -243,7 +252,7 @@ impl RigidBody {
 
     /// Whether forces change nothing of its motion.
     pub(super) fn is_driven(&self) -> bool {
-        let free = |drive: &Drive| matches!(drive, Drive::Force(_) | Drive::Free);
+        let free = |drive: &Drive| matches!(drive, Drive::Force(_) | Drive::Servo(_) | Drive::Free);
         !self.along.iter().chain(&self.about).any(free)
     }
 
@@ -253,6 +262,24 @@ impl RigidBody {
         let given = |drive: &Drive| if let Drive::Velocity(given) = drive { given(middle, &self.start) } else { 0.0 };
         let [velocity, spin] = [&self.along, &self.about].map(|drives| Vec3::from_fn(|axis, _| given(&drives[axis])));
         Frame { velocity, spin, ..self.frame }.moved(dt_after)
+    }
+
+    /// Finds the areas that the pressures of servos act on, where planes that move enclose them.
+    pub(super) fn find_servo_areas(bodies: &mut [RigidBody]) {
+        for body in 0..bodies.len() {
+            for axis in 0..3 {
+                if let Drive::Servo(Servo { area: Some(ServoArea::Between { planes, .. }), .. }) =
+                    bodies[body].along[axis]
+                {
+                    let found = area_between(bodies, planes);
+                    if let Drive::Servo(Servo { area: Some(ServoArea::Between { now, .. }), .. }) =
+                        &mut bodies[body].along[axis]
+                    {
+                        *now = found;
+                    }
+                }
+            }
+        }
     }
 
     /// Advances velocities and place with the forces of tⁿ.
@@ -272,6 +299,11 @@ impl RigidBody {
                     (after, outside)
                 }
                 (Drive::Velocity(velocity), _) => (velocity(time + 0.5 * dt_after, &self.start), -self.force[axis]),
+                (Drive::Servo(servo), _) => {
+                    let (force, touched) = (self.force[axis], self.touched);
+                    let step = ServoStep { time, dt: dt_kick, velocity: before, force, touched };
+                    (servo.velocity(&step, &self.start), -force)
+                }
                 _ => (0.0, 0.0),
             };
             self.frame.velocity[axis] = after;
@@ -320,4 +352,13 @@ impl RigidBody {
 fn inertia_in_space(inertia: &Inertia, rotation: &Rotation) -> Mat3 {
     let turn = rotation.to_rotation_matrix();
     turn.matrix() * inertia.tensor * turn.matrix().transpose()
+}
+
+/// Product of the distances of two pairs of planes [m²].
+fn area_between(bodies: &[RigidBody], planes: [usize; 4]) -> f64 {
+    let distance = |a: usize, b: usize| {
+        let [first, second] = [a, b].map(|plane| &bodies[plane].frame);
+        (second.origin - first.origin).dot(&first.to_space(&Vec3::z())).abs()
+    };
+    distance(planes[0], planes[1]) * distance(planes[2], planes[3])
 }

@@ -48,9 +48,9 @@ pub struct BondedStatics {
     /// Particle, axis and displacement of what moves, at the end.
     prescribed: Vec<(u32, usize, f64)>,
     stage: LoadStage,
-    /// Work of the supports from none to all of their way, were nothing to break, times two [J].
+    /// Work of supports and loads from none to all of their size, were nothing to break, times two [J].
     push: f64,
-    /// Work of the supports so far [J].
+    /// Work of supports and loads so far [J].
     work: f64,
     /// Elastic energy that breaks have set free beyond that of the broken bonds [J].
     sudden: f64,
@@ -97,10 +97,17 @@ impl BondedStatics {
             stop: STRENGTHLESS,
             tolerance: Tolerance { residual: settings.tolerance, iterations: ITERATIONS, stop },
         };
-        let run = QuasiStatic::new(lattice, supports, &guess, &what)?;
+        let forces = bonded.loads.proportional(bonded, &all.mass, settings.end)?;
+        let loaded = forces.iter().any(|force| *force != Vec3::zeros());
+        let loads: Vec<[f64; 6]> = if loaded {
+            forces.iter().map(|force| [force.x, force.y, force.z, 0.0, 0.0, 0.0]).collect()
+        } else {
+            Vec::new()
+        };
+        let run = QuasiStatic::under_loads(lattice, supports, &loads, &guess, &what)?;
         let mut statics =
             BondedStatics { run, settings, prescribed, stage: LoadStage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
-        statics.push = statics.push_of_supports();
+        statics.push = statics.push();
         Ok(statics)
     }
 
@@ -123,6 +130,9 @@ impl BondedStatics {
     pub fn step(&mut self, scene: &mut Scene) -> Result<(), StepError> {
         if scene.clock.step > 0 && self.stage == LoadStage::Failing {
             self.break_and_rebalance(scene)?;
+            if self.stage == LoadStage::Separated {
+                return Ok(());
+            }
         }
         self.load_to_next_failure(scene);
         Ok(())
@@ -138,9 +148,10 @@ impl BondedStatics {
         self.run.body().effort()
     }
 
-    fn push_of_supports(&self) -> f64 {
+    fn push(&self) -> f64 {
         let work = |&(i, axis, value): &(u32, usize, f64)| self.run.body().reaction(i)[axis] * value;
-        self.prescribed.iter().filter(|(.., value)| *value != 0.0).map(work).sum()
+        let of_supports: f64 = self.prescribed.iter().filter(|(.., value)| *value != 0.0).map(work).sum();
+        of_supports + self.run.body().work_of_loads()
     }
 
     /// Moves the supports on to the next failure and brings the scene there.
@@ -186,13 +197,26 @@ impl BondedStatics {
         let square = self.run.factor().powi(2);
         let elastic = square * self.run.body().energy();
         let (step, time) = (scene.clock.step, scene.clock.time);
-        self.run.break_and_rebalance().map_err(|error| match error {
-            DemError::Interrupted => StepError::Interrupted { step, time },
-            error => StepError::NoBondedEquilibrium { step, time, error },
-        })?;
+        let loads_before = self.run.body().work_of_loads();
+        let found = self.run.break_and_rebalance();
         let lost: f64 = self.run.cracks()[before..].iter().map(|crack| crack.energy).sum();
-        self.sudden += elastic - square * self.run.body().energy() - lost;
-        self.push = self.push_of_supports();
+        match found {
+            Ok(()) => {
+                // Supports stand still; loads do work as the body gives way.
+                let given = square * (self.run.body().work_of_loads() - loads_before);
+                self.work += given;
+                self.sudden += elastic + given - square * self.run.body().energy() - lost;
+                self.push = self.push();
+            }
+            // What is left cannot bear the loads.
+            Err(DemError::NotConverged { .. }) if self.run.body().is_loaded() => {
+                self.stage = LoadStage::Separated;
+                scene.ledger[EnergyKind::Elastic] -= lost;
+                scene.ledger[EnergyKind::Removed] += lost;
+            }
+            Err(DemError::Interrupted) => return Err(StepError::Interrupted { step, time }),
+            Err(error) => return Err(StepError::NoBondedEquilibrium { step, time, error }),
+        }
         let end = self.settings.end;
         let BondedBody { fracture, bonds, .. } = &mut scene.bonded.bodies[0];
         if let Some(fracture) = fracture {

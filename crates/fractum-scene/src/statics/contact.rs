@@ -383,7 +383,7 @@ fn accept_grounds(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {
             if let Some(rigid_body) =
                 ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
             {
-                rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm));
+                rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm), 0.0);
             }
         }
         shape_contacts[index].candidates = candidates;

@@ -2,7 +2,7 @@
 
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
-use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, SolidBody, SolverKind};
+use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, ServoForce, SolidBody, SolverKind};
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{
@@ -67,11 +67,17 @@ impl Plan {
             }
         };
         let inside = if rigid.inside { ", around its particles" } else { "" };
+        let servo = rigid.servo.as_ref().map(|servo| {
+            let by = if matches!(servo.force, ServoForce::Force(_)) { "force" } else { "pressure" };
+            format!(", held at a {by} by a servo, at most {}", quantity(servo.speed, "m/s"))
+        });
         let motion = match (&rigid.mass, rigid.velocity.iter().chain(&rigid.spin).any(Option::is_some)) {
             (Some(mass), _) => format!("free, mass {}", quantity(*mass, "kg")),
             (None, true) => "driven".to_owned(),
+            (None, false) if servo.is_some() => "driven".to_owned(),
             (None, false) => "at rest".to_owned(),
         };
+        let servo = servo.unwrap_or_default();
         let made = rigid.material.map_or("rigid", |material| case.materials[material].name.value.as_str());
         let friction = rigid.contact.friction;
         let index = scene.contacts.rigid_bodies().iter().position(|rigid_body| rigid_body.name == name);
@@ -83,7 +89,7 @@ impl Plan {
             Some(false) => ", presses on solids by springs",
             None => "",
         };
-        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}, friction {friction}{how}"));
+        self.add("body", format!("{name}: {made} {shape}{inside}, {motion}{servo}, friction {friction}{how}"));
     }
 
     fn describe_bonded(&mut self, material: &Material, report: &BondedReport) {

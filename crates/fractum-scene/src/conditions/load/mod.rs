@@ -17,6 +17,7 @@ pub use pressure::Pressure;
 pub(crate) use release::Release;
 
 use super::{DrivenPoints, Points};
+use crate::error::SceneError;
 use crate::gas::{Gas, GasState};
 
 /// A force from outside.
@@ -235,6 +236,35 @@ impl Loads {
         }
         self.released = state.released;
         self.make_room();
+    }
+
+    /// Forces on all points at the time `end` [N], which must grow in proportion to time.
+    ///
+    /// - `masses`: of all points [kg]
+    ///
+    /// # Errors
+    /// [`SceneError::LoadNotProportional`].
+    pub(crate) fn proportional(&self, points: &impl Points, masses: &[f64], end: f64) -> Result<Vec<Vec3>, SceneError> {
+        let at = |share: f64| {
+            let mut applied = Applied::default();
+            self.loads.iter().for_each(|load| load.apply(points, None, share * end, &mut applied));
+            let mut sums: Vec<Vec3> = masses.iter().map(|mass| applied.gravity * *mass).collect();
+            applied.forces.iter().for_each(|(point, force)| sums[*point as usize] += force);
+            sums
+        };
+        let whole = at(1.0);
+        let largest = whole.iter().map(|force| force.amax()).fold(0.0, f64::max);
+        for share in [0.0, 0.1, 0.25, 0.5, 0.7] {
+            let off = at(share)
+                .iter()
+                .zip(&whole)
+                .map(|(part, whole)| part - whole * share)
+                .find(|off| off.amax() > 1e-9 * largest);
+            if let Some(off) = off {
+                return Err(SceneError::LoadNotProportional { axis: ['x', 'y', 'z'][off.iamax()] });
+            }
+        }
+        Ok(whole)
     }
 
     /// Whether points have weight.

@@ -1,0 +1,104 @@
+//! Pressures and loads on bonded bodies, as their user meets them.
+
+use crate::common::{Workplace, resumed, run};
+
+const CYLINDER: &str = r#"fractum = 1
+title = "A cylinder under pressure"
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "20 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "core"
+kind = "bonded"
+material = "rock"
+shape = "cylinder"
+length = "40 mm"
+radius = "12 mm"
+particles = 1500
+coordination = 10
+LOADS
+[solver]
+SOLVER
+[[probes]]
+name = "yy"
+strain = { group = "core", where = "abs(x - 20 mm) < 10 mm", component = "yy" }
+[[probes]]
+name = "zz"
+strain = { group = "core", where = "abs(x - 20 mm) < 10 mm", component = "zz" }
+[[probes]]
+name = "xx"
+strain = { group = "core", where = "abs(x - 20 mm) < 10 mm", component = "xx" }
+[[probes]]
+name = "drift"
+momentum = { along = "y" }
+[output]
+fields = { every = "1 s" }
+"#;
+
+const AT_REST: &str = "kind = \"static\"\nend = \"1 s\"";
+const HELD: &str = "[[supports]]\ngroup = \"core.x-\"\nfix = \"x\"\n";
+
+fn case(loads: &str, solver: &str) -> String {
+    CYLINDER.replace("LOADS", loads).replace("SOLVER", solver).replace("fields = { every = \"1 s\" }\n", "")
+}
+
+/// The strain across is (1 - ν) p/E under a pressure on the side, that along 2 ν p/E; under a pressure from everywhere all are (1 - 2ν) p/E.
+#[test]
+fn pressures_at_rest_have_the_strains_of_hooke() {
+    for (group, across, along) in [("core.radius", -0.8, 0.4), ("core", -0.6, -0.6)] {
+        let loads = format!("[[loads]]\ngroup = \"{group}\"\npressure = \"10 MPa*t/1 s\"\n{HELD}");
+        let place = Workplace::new(&case(&loads, AT_REST));
+        let one = run(&place, "one", "1");
+        let unit = 10e6 / 20e9;
+        let strain = |name: &str| one["probes"][name]["final"].as_f64().unwrap() / unit;
+        let mean = 0.5 * (strain("yy") + strain("zz"));
+        println!("{group}: {} {} {}", strain("yy"), strain("zz"), strain("xx"));
+        assert!((mean / across - 1.0).abs() < 0.06, "{group}: {mean} for {across}");
+        assert!((strain("xx") / along - 1.0).abs() < 0.08, "{group}: {} for {along}", strain("xx"));
+        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-6, "{}", one["energy"]);
+        let two = run(&place, "two", "2");
+        assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+    }
+}
+
+/// In motion nothing holds the body, and it stays where it is: the pressure is in equilibrium.
+#[test]
+fn a_pressure_in_motion_drives_nothing_away_and_has_the_same_bits_after_a_checkpoint() {
+    let loads =
+        "[[loads]]\ngroup = \"core.radius\"\npressure = { smooth_ramp = [[\"0 s\", 0], [\"0.4 ms\", \"10 MPa\"]] }\n";
+    let text = case(loads, "end = \"0.5 ms\"") + "[output.checkpoint]\nevery = \"10 ms\"\n";
+    let place = Workplace::new(&text.replace("[output]\n", ""));
+    let one = run(&place, "one", "1");
+    let value = |name: &str| one["probes"][name]["final"].as_f64().unwrap();
+    let unit = 10e6 / 20e9;
+    let mean = 0.5 * (value("yy") + value("zz")) / unit;
+    println!("{mean}");
+    assert!((mean / -0.8 - 1.0).abs() < 0.06, "{mean}");
+    // The area of a disc under the pressure, for the whole time, is 0.2 kg m/s.
+    assert!(value("drift").abs() < 1e-9, "{}", value("drift"));
+    assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", one["energy"]);
+    let two = run(&place, "two", "2");
+    assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+    let resumed = resumed(&place, "two");
+    assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+}
+
+#[test]
+fn loads_that_a_bonded_body_cannot_have_are_told() {
+    let told = |loads: &str, solver: &str| {
+        let place = Workplace::new(&case(loads, solver));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+        ended.stderr
+    };
+    let loads = format!("[[loads]]\ngroup = \"core.radius\"\npressure = \"10 MPa\"\n{HELD}");
+    assert!(told(&loads, AT_REST).contains("does not grow in proportion to time"));
+    let text = told("[[loads]]\ngroup = \"core.radius\"\npressure = 1\nin_cracks = true\n", "end = \"1 ms\"");
+    assert!(text.contains("with in_cracks"), "{text}");
+    let text = told(
+        "[bodies.groups]\nmiddle = \"hypot(y, z) < 3 mm && abs(x - 20 mm) < 5 mm\"\n[[loads]]\ngroup = \"core.middle\"\npressure = 1\n",
+        "end = \"1 ms\"",
+    );
+    assert!(text.contains("none of its particles lies at a wall"), "{text}");
+}
