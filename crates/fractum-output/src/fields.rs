@@ -42,6 +42,7 @@ output_fields! {
     Strain, "strain", "Write the strain of elements, thermal strain included";
     Reaction, "reaction", "Write the forces of supports on nodes";
     Fragment, "fragment", "Write the number of the fragment that each node belongs to, as in fragments.csv; 0 for single nodes";
+    Xyz, "xyz", "Write the particles of bonded and loose bodies as extended xyz too, at their present positions, for OVITO: particles/particles-00000.xyz";
 }
 
 /// The fields that a case asks for.

@@ -15,6 +15,7 @@ use crate::frames::interfaces;
 use crate::frames::particles::{ParticleFiles, tensor};
 use crate::frames::population::Population;
 use crate::frames::rigid_surface::RigidSurfaces;
+use crate::frames::xyz;
 use crate::number::push_shortest;
 
 /// Folder of the tables in the results folder.
@@ -39,7 +40,7 @@ pub struct Frame {
     /// Steps done.
     pub step: u64,
     parts: Vec<(Population, FrameFile)>,
-    /// Tables of gauges under their names.
+    /// Tables of gauges under their names, and files under theirs with folder and ending.
     tables: Vec<(String, PendingFile)>,
 }
 
@@ -91,13 +92,20 @@ impl Frame {
         frame.parts.extend(whole.into_iter().map(|(population, file)| (population, FrameFile::Whole(file))));
         let table = |gauges: &BuiltGauges| (gauges.name.clone(), gauge_table(scene, &gauges.grid));
         frame.tables = grid.gauges.iter().map(table).collect();
+        if grid.further.has(OutputField::Xyz) {
+            frame.tables.extend(xyz::file(scene).map(|file| (xyz::FILES.to_owned(), file)));
+        }
         Ok(frame)
     }
 
     /// Takes the tables out, as those of frame `number`: name from the results folder, and file.
     pub fn take_tables(&mut self, number: u64) -> Vec<(String, PendingFile)> {
         let tables = std::mem::take(&mut self.tables).into_iter();
-        tables.map(|(name, file)| (format!("{}/{name}-{number:05}.csv", GAUGES), file)).collect()
+        let numbered = |name: String| match name.rsplit_once('.') {
+            Some((stem, ending)) => format!("{stem}-{number:05}.{ending}"),
+            None => format!("{GAUGES}/{name}-{number:05}.csv"),
+        };
+        tables.map(|(name, file)| (numbered(name), file)).collect()
     }
 
     /// The files, as those of frame `number`; a file that lists pieces comes behind them.
@@ -277,6 +285,7 @@ fn of_nodes(field: OutputField, scene: &Scene, order: &[u32]) -> Vec<Array> {
             let fragments = scene.fragment_of_nodes();
             vec![Array::integers("fragment", nodes().map(|node| fragments[node]))]
         }
+        OutputField::Xyz => Vec::new(),
     }
 }
 
@@ -299,6 +308,7 @@ fn of_elements(field: OutputField, solid: &Solid, stresses: &[Sym3]) -> Vec<Arra
             vec![Array::new("strain", strains.map(|strain| strain.0))]
         }
         OutputField::Reaction | OutputField::Fragment => Vec::new(),
+        OutputField::Xyz => Vec::new(),
     }
 }
 

@@ -12,6 +12,7 @@ mod read;
 mod rigid_surface;
 mod triangles;
 mod writer;
+mod xyz;
 
 pub use frame::{BuiltGauges, Frame, FrameEntry, GAUGES, GridLayout};
 pub use path_frames::PathFrames;

@@ -9,7 +9,7 @@ use fractum_output::atomic::{Group, Written};
 use fractum_output::attenuation::{Attenuation, Station};
 use fractum_output::columns::{HistoryColumns, Instant};
 use fractum_output::fields::OutputField;
-use fractum_output::frames::{BuiltGauges, Frame, FrameEntry, FrameWriter, GAUGES, GridLayout, PathFrames};
+use fractum_output::frames::{BuiltGauges, Frame, FrameEntry, FrameWriter, GridLayout, PathFrames};
 use fractum_output::history::History;
 use fractum_output::summary::LargestOverlap;
 use fractum_scene::{
@@ -383,8 +383,9 @@ impl Recorder {
         let number = if self.course.rests { self.state.path.frames() } else { self.state.frames };
         let (mut files, instant) = (Vec::new(), frame.instant);
         for (name, file) in frame.take_tables(number) {
-            fractum_output::atomic::create_folder(&self.results.join(GAUGES))?;
-            files.push((self.results.join(&name), file));
+            let path = self.results.join(&name);
+            path.parent().map_or(Ok(()), fractum_output::atomic::create_folder)?;
+            files.push((path, file));
         }
         for FrameEntry { population, name, file, is_listed } in frame.files(number) {
             fractum_output::atomic::create_folder(&self.results.join(population.folder()))?;

@@ -393,7 +393,7 @@ fn discard_results(folder: &Path) -> Result<(), Failure> {
     for path in files.filter(|path| path.is_file()) {
         std::fs::remove_file(&path).map_err(|error| WriteError::new(&path, error))?;
     }
-    let endings = [".vtu", ".vtp", ".pvtu", ".pvtp"];
+    let endings = [".vtu", ".vtp", ".pvtu", ".pvtp", ".xyz"];
     let frames = Population::ALL.iter().flat_map(|population| endings.map(|end| (population.folder(), "", end)));
     for (name, start, end) in frames.chain([("pictures", STRIP_FILE, ".png"), (GAUGES, "", ".csv")]) {
         let Ok(entries) = std::fs::read_dir(folder.join(name)) else { continue };
