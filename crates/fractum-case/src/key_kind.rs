@@ -78,6 +78,8 @@ pub enum KeyKind {
     Firing,
     /// Rows of joints, or a file of them.
     JointRows,
+    /// Pairs of diameter and share of the mass.
+    Sieves,
 }
 
 impl KeyKind {
@@ -118,6 +120,7 @@ impl KeyKind {
             Self::Firing => {
                 "rows such as [[\"hole-1\", \"25 ms\", \"contour\"]], or a CSV file of such rows".to_string()
             }
+            Self::Sieves => "pairs such as [[\"1 mm\", 0], [\"2 mm\", \"40 %\"], [\"4 mm\", 1]]".to_string(),
             Self::Points => "pairs such as [[\"0 s\", \"0 m/s\"], [\"1 ms\", \"2 m/s\"]]".to_string(),
         }
     }
@@ -143,7 +146,7 @@ impl KeyKind {
             Self::Field(dimension) => format!("expression [{dimension}]"),
             Self::Condition => "condition".to_string(),
             Self::ProbeExpression => "probe expression".to_string(),
-            Self::Points => "list of pairs".to_string(),
+            Self::Points | Self::Sieves => "list of pairs".to_string(),
             Self::Names => "list of names".to_string(),
             Self::AllOrNames => "true, list of names".to_string(),
             Self::RateCurve => "function of rate".to_string(),

@@ -133,6 +133,9 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
             count: count.as_ref().map(|count| count.value),
             seed: *seed,
         },
+        LooseSource::Graded { region, grading, amount, seed } => {
+            LooseFill::Graded { region: &region.value, grading, amount: amount.value, seed: *seed }
+        }
     };
     LooseRequest { source, density: material.density, young_modulus: material.young_modulus }
 }
@@ -164,7 +167,10 @@ fn of_loose(name: &Place, loose: &LooseBody, fault: &Fault) -> Diagnostic {
         (At::Size, LooseSource::Cloud { count: Some(count), .. }) => {
             placed(&count.place, format!("= {}", count.value), fault)
         }
-        (At::Shape, LooseSource::Cloud { region, .. }) => placed(&region.place, String::new(), fault),
+        (At::Size, LooseSource::Graded { amount, .. }) => placed(&amount.place, String::new(), fault),
+        (At::Shape, LooseSource::Cloud { region, .. } | LooseSource::Graded { region, .. }) => {
+            placed(&region.place, String::new(), fault)
+        }
         _ => placed(name, String::new(), fault),
     }
 }

@@ -93,7 +93,7 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
             });
             json!({ "anyOf": [{ "type": ["number", "string"] }, { "type": "array", "items": pair, "minItems": 1 }] })
         }
-        KeyKind::Points => {
+        KeyKind::Points | KeyKind::Sieves => {
             let pair = json!({
                 "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 2
             });

@@ -3,7 +3,7 @@
 use fractum_calibrate::Micro;
 use fractum_dem::{FractureCriterion, LocalBond};
 use fractum_math::Vec3;
-use fractum_pack::{Arrangement, Convention, Domain};
+use fractum_pack::{Arrangement, Convention, Domain, Grading};
 
 /// A bonded body to be made.
 #[derive(Clone, Debug)]
@@ -115,6 +115,26 @@ pub enum LooseFill<'a> {
         /// Seed of radii and places.
         seed: u64,
     },
+    /// A cloud of given sizes at random places: no two touch.
+    Graded {
+        /// The region.
+        region: &'a Region,
+        /// Sizes of its particles.
+        grading: &'a Grading,
+        /// How many.
+        amount: Amount,
+        /// Seed of sizes and places.
+        seed: u64,
+    },
+}
+
+/// How much of a cloud of given sizes there is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amount {
+    /// So many particles.
+    Count(u64),
+    /// Volume of the particles over that of the region.
+    Fraction(f64),
 }
 
 /// How the particle size is chosen.
@@ -197,6 +217,28 @@ pub enum Region {
         /// Radius [m], > 0.
         radius: f64,
     },
+}
+
+impl Region {
+    /// Volume [m³].
+    pub fn volume(&self) -> f64 {
+        match self {
+            Region::Box { size, .. } => size.product(),
+            Region::Cylinder { length, radius, .. } => std::f64::consts::PI * radius * radius * length,
+            Region::Sphere { radius, .. } => fractum_math::sphere_volume(*radius),
+        }
+    }
+}
+
+/// Particles of given sizes in a region, at least one.
+pub fn graded_count(region: &Region, grading: &Grading, amount: Amount) -> f64 {
+    match amount {
+        Amount::Count(count) => count as f64,
+        Amount::Fraction(share) => {
+            let mean = grading.mean_cube() * std::f64::consts::PI / 6.0;
+            (share * region.volume() / mean).round().max(1.0)
+        }
+    }
 }
 
 /// Why a body cannot be made.

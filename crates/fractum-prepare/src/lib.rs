@@ -26,8 +26,8 @@ mod loose;
 mod region;
 
 pub use asked::{
-    At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces, LooseFill,
-    LooseRequest, PackingRequest, ParticleSize, Region, Shape,
+    Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces,
+    LooseFill, LooseRequest, PackingRequest, ParticleSize, Region, Shape, graded_count,
 };
 pub use body::PreparedBody;
 pub use bonded::{

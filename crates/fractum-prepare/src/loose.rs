@@ -2,9 +2,9 @@
 
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::{Vec3, sphere_volume};
-use fractum_pack::cloud;
+use fractum_pack::{Grading, cloud, insert};
 
-use crate::asked::{At, Fault, LooseFill, LooseRequest, Region};
+use crate::asked::{Amount, At, Fault, LooseFill, LooseRequest, Region, graded_count};
 use crate::body::PreparedBody;
 
 /// Makes loose particles ready.
@@ -33,6 +33,10 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
             }
             (centres, radii, At::Shape)
         }
+        LooseFill::Graded { region, grading, amount, seed } => {
+            let (centres, radii) = fill_graded(region, grading, amount, seed)?;
+            (centres, radii, At::Shape)
+        }
     };
     let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
     let particles =
@@ -52,6 +56,54 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
         fracture: None,
         replaced: Vec::new(),
     })
+}
+
+/// Particles that may be asked for.
+const MOST: f64 = 2e7;
+
+fn fill_graded(region: &Region, grading: &Grading, amount: Amount, seed: u64) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
+    let count = graded_count(region, grading, amount);
+    if count > MOST {
+        let fault =
+            Fault::new(At::Size, format!("asks for {count:.2e} particles of these sizes, more than {MOST:.0e}"));
+        return Err(fault.remedy("a smaller region, or sizes with fewer fines"));
+    }
+    let diameters = grading.draw(count as usize, seed);
+    let radii: Vec<f64> = diameters.iter().map(|diameter| 0.5 * diameter).collect();
+    let (lower, upper) = bounds(region);
+    // Places have numbers of their own.
+    let centres = insert(&lower, &upper, depth_in(region), &radii, !seed);
+    if centres.len() < radii.len() {
+        let found = format!("there is room for {} of {} particles, largest first", centres.len(), radii.len());
+        return Err(Fault::new(At::Size, found).remedy("a lower solid_fraction or fewer particles, or a larger region"));
+    }
+    Ok((centres, radii))
+}
+
+/// Box around a region.
+fn bounds(region: &Region) -> (Vec3, Vec3) {
+    match *region {
+        Region::Box { point, size } => (point, point + size),
+        Region::Cylinder { point, axis, length, radius } => {
+            let end = point + axis * length;
+            let reach = axis.map(|a| radius * (1.0 - a * a).max(0.0).sqrt());
+            (point.inf(&end) - reach, point.sup(&end) + reach)
+        }
+        Region::Sphere { point, radius } => (point - Vec3::repeat(radius), point + Vec3::repeat(radius)),
+    }
+}
+
+/// Distance of a point from the wall of a region [m], positive inside.
+fn depth_in(region: &Region) -> impl Fn(&Vec3) -> f64 {
+    let region = *region;
+    move |x| match region {
+        Region::Box { point, size } => (x - point).min().min((point + size - x).min()),
+        Region::Cylinder { point, axis, length, radius } => {
+            let along = (x - point).dot(&axis);
+            along.min(length - along).min(radius - (x - point - axis * along).norm())
+        }
+        Region::Sphere { point, radius } => radius - (x - point).norm(),
+    }
 }
 
 fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -> (Vec<Vec3>, Vec<f64>) {

@@ -41,3 +41,4 @@ mod told;
 mod vtk_frames;
 mod warnings;
 mod wrong_input;
+mod xyz;

@@ -166,6 +166,14 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].particle_radius", K::Quantity(D::LENGTH), "", "Mean particle radius, > 0; bonded: instead of their number; loose, required with a shape"),
     key("bodies[].replaces", K::Text, "", "Bonded: solid body of which it replaces the tetrahedra wholly within the shape (or group). Its particles fill the region of these tetrahedra and are tied to the rest"),
     key("bodies[].dispersion", K::Quantity(D::NONE), "0.25", "(largest - smallest)/mean of the particle radii, 0 to 1; 0 where loose particles say nothing"),
+    key("bodies[].sizes", K::Table, "", "Loose: diameters of the particles of a shape, instead of particle_radius and dispersion; by one of passing, law"),
+    key("bodies[].sizes.passing", K::Sieves, "", "Sieve curve: pairs of opening and share of the mass that passes, from 0 to 1; linear between them"),
+    key("bodies[].sizes.law", K::Choice(size_laws), "", "uniform: as many particles of every diameter. log-normal: the logarithm of the diameter is normally distributed by mass"),
+    key("bodies[].sizes.smallest", K::Quantity(D::LENGTH), "", "With a law, required there: smallest diameter, > 0"),
+    key("bodies[].sizes.largest", K::Quantity(D::LENGTH), "", "With a law, required there: largest diameter, at most 100 times the smallest"),
+    key("bodies[].sizes.median", K::Quantity(D::LENGTH), "", "log-normal only, required there: diameter below which half of the mass lies, before it is cut off at both ends"),
+    key("bodies[].sizes.deviation", K::Quantity(D::NONE), "", "log-normal only, required there: standard deviation of the natural logarithm, above 0 and at most 2"),
+    key("bodies[].solid_fraction", K::Quantity(D::NONE), "0.25", "Loose, with sizes: volume of the particles over that of the shape, above 0 and at most 0.5; instead of particles"),
     key("bodies[].seed", K::Integer, "1", "Bonded and particles: seed of the packing"),
     key("bodies[].packing", K::Text, "", "Bonded: packing made by `fractum pack` (.fpk), relative to the case file, instead of a shape"),
     key("bodies[].arrangement", K::Choice(names::<Arrangement>), "\"random\"", "Bonded box: arrangement of its particles. The regular ones have one radius, and 6 or 12 neighbours"),
@@ -203,6 +211,10 @@ fn areas() -> Vec<&'static str> {
 
 fn distributions() -> Vec<&'static str> {
     vec!["weibull", "weibull-per-edge", "uniform-per-edge"]
+}
+
+fn size_laws() -> Vec<&'static str> {
+    super::SIZE_LAWS.to_vec()
 }
 
 fn body_kinds() -> Vec<&'static str> {

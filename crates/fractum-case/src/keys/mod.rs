@@ -27,6 +27,9 @@ use super::{Diagnostic, nearest};
 /// Names of the curves of strength by rate that a standard gives.
 pub(super) const RATE_PRESETS: [&str; 2] = ["fib-2010", "fib-2010-first-branch"];
 
+/// Names of the laws of sizes of loose particles.
+pub(super) const SIZE_LAWS: [&str; 2] = ["uniform", "log-normal"];
+
 /// Pattern of the table form of a time function, which may stand at many keys.
 pub(super) const TIME_FUNCTION: &str = "TIME_FUNCTION";
 

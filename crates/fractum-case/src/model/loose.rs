@@ -1,6 +1,7 @@
 //! Loose particles: spheres that nothing joins.
 
-use fractum_prepare::Region;
+use fractum_pack::Grading;
+use fractum_prepare::{Amount, Region};
 
 use super::FileContent;
 use crate::{Field, Spanned};
@@ -39,6 +40,17 @@ pub enum LooseSource {
         /// At most so many; `None` = as many as there is room for.
         count: Option<Spanned<u64>>,
         /// Seed of radii and places.
+        seed: u64,
+    },
+    /// A cloud of given sizes at random places: no two touch.
+    Graded {
+        /// The region, with its place.
+        region: Spanned<Region>,
+        /// Sizes of its particles.
+        grading: Grading,
+        /// How many, with the place.
+        amount: Spanned<Amount>,
+        /// Seed of sizes and places.
         seed: u64,
     },
 }

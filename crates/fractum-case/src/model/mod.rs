@@ -28,7 +28,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use fractum_output::expectation::Bound;
-pub use fractum_prepare::{BondLawKind, BondStrength, InterfaceArea, Interfaces, ParticleSize, Region};
+pub use fractum_prepare::{Amount, BondLawKind, BondStrength, InterfaceArea, Interfaces, ParticleSize, Region};
 use fractum_scene::EnergyKind;
 
 pub use body::{Body, BodyKind, SolidBody};

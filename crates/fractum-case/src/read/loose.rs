@@ -3,8 +3,8 @@
 use fractum_math::Vec3;
 
 use super::bonded::{DISPERSION_RANGE, file, groups};
-use super::unit;
-use crate::model::{LooseBody, LooseSource, Region};
+use super::{sizes, unit};
+use crate::model::{Amount, LooseBody, LooseSource, Region};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{direction, initial_velocity, point};
@@ -27,9 +27,20 @@ pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseB
 }
 
 fn from_table(table: &Table<'_>) -> Option<LooseSource> {
-    for key in
-        ["shape", "point", "size", "axis", "length", "radius", "particles", "particle_radius", "dispersion", "seed"]
-    {
+    for key in [
+        "shape",
+        "point",
+        "size",
+        "axis",
+        "length",
+        "radius",
+        "particles",
+        "particle_radius",
+        "dispersion",
+        "sizes",
+        "solid_fraction",
+        "seed",
+    ] {
         table.refuse(key, "beside a file of particles");
     }
     let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
@@ -42,16 +53,31 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
         let note = Diagnostic::error(&table.place, "has neither shape nor file");
         table.reader.note(note.expected("a shape to fill with particles, or a file of x, y, z, radius"));
     }
+    let graded = table.has("sizes");
     let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];
     let kind = table.one_of("shape", &kinds).spanned().given();
-    let radius = table.quantity("particle_radius").positive();
-    let radius = if table.has("shape") { radius.required() } else { radius.given() };
+    let radius = if graded {
+        for key in ["particle_radius", "dispersion"] {
+            table.refuse(key, "beside sizes");
+        }
+        Some(0.0)
+    } else {
+        table.refuse("solid_fraction", "without sizes");
+        let radius = table.quantity("particle_radius").positive();
+        if table.has("shape") { radius.required() } else { radius.given() }
+    };
     let count = optional(table, "particles", |name| {
         let count = table.integer(name).check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
         count.spanned().given()
     });
-    let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
-    let dispersion = dispersion.or_if_absent(0.0);
+    let dispersion = if graded {
+        Some(0.0)
+    } else {
+        let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
+        dispersion.or_if_absent(0.0)
+    };
+    let grading = if graded { sizes::sizes(table).map(Some) } else { Some(None) };
+    let amount = if graded { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
     let seed = table.integer("seed").or_if_absent(1);
     let region = match &kind {
         Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
@@ -60,7 +86,24 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
             None
         }
     };
+    if let Some(grading) = grading? {
+        let (region, seed, count) = (region?, seed?, count?);
+        let amount = count.map(|count| count.map(Amount::Count)).or(amount?)?;
+        return Some(LooseSource::Graded { region, grading, amount, seed });
+    }
     Some(LooseSource::Cloud { region: region?, radius: radius?, dispersion: dispersion?, count: count?, seed: seed? })
+}
+
+/// How much of a graded cloud there is, where that is not a number of particles.
+fn amount(table: &Table<'_>, counted: bool) -> Option<Option<Spanned<Amount>>> {
+    if counted {
+        table.refuse("solid_fraction", "beside particles");
+        return Some(None);
+    }
+    let share =
+        table.quantity("solid_fraction").check(|share| *share > 0.0 && *share <= 0.5, "above 0 and at most 0.5");
+    let share = share.map(Amount::Fraction).spanned();
+    Some(Some(share.or_if_absent(Spanned::new(Amount::Fraction(0.25), table.place_of("solid_fraction")))?))
 }
 
 fn region(table: &Table<'_>, kind: Kind) -> Option<Region> {

@@ -31,6 +31,7 @@ mod refine;
 mod rigid;
 mod scatter;
 mod servo;
+mod sizes;
 mod solver;
 mod stages;
 mod table_file;

@@ -169,7 +169,7 @@ impl Around<'_> {
                     _ => None,
                 },
                 BodyKind::Particles(loose) => match loose.source {
-                    LooseSource::Cloud { seed, .. } => Some(seed),
+                    LooseSource::Cloud { seed, .. } | LooseSource::Graded { seed, .. } => Some(seed),
                     LooseSource::Table { .. } => None,
                 },
                 BodyKind::Solid(_) | BodyKind::Rigid(_) => None,

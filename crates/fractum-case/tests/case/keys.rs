@@ -180,6 +180,8 @@ fn documented_defaults_are_the_defaults() {
         (text.as_str(), "cement", "bodies[10]", ""),
         (text.as_str(), "grout", "bodies[11]", ""),
         (text.as_str(), "shale", "bodies[12]", ""),
+        (text.as_str(), "mortar", "bodies[14]", ""),
+        (text.as_str(), "mortar", "bodies[17]", ""),
         (SMALL, "steel", "bodies[0]", ""),
         (BONDED_AT_REST, "steel", "bodies[0]", ""),
         (breaking.as_str(), "steel", "bodies[0]", ""),

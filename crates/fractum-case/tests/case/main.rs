@@ -8,6 +8,7 @@ mod mistakes;
 mod reading;
 mod robustness;
 mod servo;
+mod sizes;
 
 use std::path::{Path, PathBuf};
 

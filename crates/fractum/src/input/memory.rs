@@ -10,6 +10,7 @@ use fractum_math::sphere_volume;
 use fractum_mesh::Mesh;
 use fractum_output::memory::{self, TooLarge};
 use fractum_pack::cloud_cells;
+use fractum_prepare::graded_count;
 
 use crate::process::ranks::Processes;
 
@@ -92,6 +93,9 @@ fn bonded(body: &BondedBody) -> f64 {
 
 /// Particles of a cloud.
 fn loose(body: &LooseBody) -> f64 {
+    if let LooseSource::Graded { region, grading, amount, .. } = &body.source {
+        return graded_count(&region.value, grading, amount.value);
+    }
     let LooseSource::Cloud { region, radius, dispersion, count, .. } = &body.source else { return 0.0 };
     // Of the cells of the box around the region those within it.
     let (size, share) = match region.value {

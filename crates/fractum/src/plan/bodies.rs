@@ -2,7 +2,9 @@
 
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
-use fractum_case::model::{BodyKind, Case, Material, RigidBody, RigidShape, ServoForce, SolidBody, SolverKind};
+use fractum_case::model::{
+    BodyKind, Case, LooseSource, Material, RigidBody, RigidShape, ServoForce, SolidBody, SolverKind,
+};
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{
@@ -46,7 +48,8 @@ impl Plan {
                             case.materials[loose.material].name.value,
                             quantity(mass.iter().sum(), "kg")
                         );
-                        self.add("body", text);
+                        let graded = matches!(loose.source, LooseSource::Graded { .. });
+                        self.add("body", if graded { text + &passing(radius) } else { text });
                     }
                 }
                 BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
@@ -346,4 +349,20 @@ fn criterion_text(criterion: &BondCriterion) -> String {
         text += &format!(", friction angle {:.1} deg", numbers.friction_angle.to_degrees());
     }
     text
+}
+
+/// Diameters below which shares of the mass of spheres lie.
+fn passing(radius: &[f64]) -> String {
+    let mut sorted = radius.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let all: f64 = sorted.iter().map(|r| r.powi(3)).sum();
+    let below = |share: f64| {
+        let mut mass = 0.0;
+        let found = sorted.iter().find(|r| {
+            mass += r.powi(3);
+            mass >= share * all
+        });
+        quantity(2.0 * found.copied().unwrap_or_default(), "m")
+    };
+    format!("; 10, 50 and 90 % of the mass below {}, {} and {}", below(0.1), below(0.5), below(0.9))
 }
