@@ -41,7 +41,7 @@ fn each_mistake_about_sizes_has_one_clear_message() {
         (
             "[0.4, 1]",
             "[0.4, 0.9]",
-            "12:21: bodies[0].sizes.passing is a list; expected pairs that end with a share of 1: all passes the largest sieve",
+            "12:21: bodies[0].sizes.passing = [[0.1, 0], [0.2, \"40 %\"], [0.4, 0.9]]; expected pairs that end with a share of 1: all passes the largest sieve",
         ),
         (
             "passing = [[0.1, 0], [0.2, \"40 %\"], [0.4, 1]]",
