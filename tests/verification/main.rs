@@ -1,5 +1,6 @@
 //! Several crates against theory, without files. One test program: a new file is a line here.
 
+mod axisymmetric;
 mod bars;
 mod bed_strength;
 mod bedding;

@@ -53,7 +53,7 @@ pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
 };
-pub use element::{CUT_MODES, InvertedElement, facet_area};
+pub use element::{CUT_MODES, Depth, InvertedElement, facet_area};
 pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
@@ -65,5 +65,5 @@ pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
 pub use solid::subcycling::rubbed_energy;
-pub use solid::thickness::{facet_thickness, thickness_at};
+pub use solid::thickness::{depth_at, facet_depth, thickness_at};
 pub use state::{BodyState, SolidState, rate_report};

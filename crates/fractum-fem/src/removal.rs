@@ -242,7 +242,9 @@ pub(crate) fn rebuild_cells_around(solid: &mut Solid, body: usize, elements: &[u
         let range = cells.range(cell as usize);
         let alive = |element: u32| model.alive[element as usize];
         let around = edges.around(edge);
-        cells.volume[cell as usize] = geometry.edge_domain(&nodes, &around, alive, &mut cells.gradients[range]);
+        let [volume, hoop] = geometry.edge_domain(&nodes, &around, alive, &mut cells.gradients[range]);
+        cells.volume[cell as usize] = volume;
+        cells.hoop.iter_mut().for_each(|own| own[cell as usize] = hoop);
     }
     refresh_phase(solid, body, &touched);
 }

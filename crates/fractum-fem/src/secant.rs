@@ -30,8 +30,10 @@ pub struct SecantCell<'a> {
     pub first_pair: usize,
     /// Nodes.
     pub nodes: &'a [u32],
-    /// Gradients of their shape functions over the cell [1/m], as many as nodes.
+    /// Gradients of their shape functions over the cell [1/m], as many as nodes; around an axis the third components are those for the hoop strain.
     pub gradients: &'a [[f64; 3]],
+    /// Whether it lies around an axis.
+    around: bool,
     /// λ V (1 - d) and μ V (1 - d) [N m].
     lame: [f64; 2],
     /// The stiffness of beds, which replaces them, and V (1 - d) [m³].
@@ -62,9 +64,34 @@ impl SecantCell<'_> {
         (stiffness.stress(strain) * left).to_matrix()
     }
 
+    /// Displacement gradient by displacements of all nodes [m].
+    pub fn gradient(&self, field: &[Vec3]) -> Mat3 {
+        let mut h = Mat3::zeros();
+        for (&node, g) in self.nodes.iter().zip(self.gradients) {
+            h += field[node as usize] * Vec3::from(*g).transpose();
+        }
+        if self.around {
+            h.set_column(2, &Vec3::new(0.0, 0.0, h[(0, 2)]));
+        }
+        h
+    }
+
+    /// Adds the forces on its nodes that hold a stress times volume.
+    fn add_forces(&self, mut stress: Mat3, force: &mut [Vec3]) {
+        if self.around {
+            stress.set_column(2, &Vec3::new(stress[(2, 2)], 0.0, 0.0));
+        }
+        for (&node, g) in self.nodes.iter().zip(self.gradients) {
+            force[node as usize] += stress * Vec3::from(*g);
+        }
+    }
+
     /// Stiffness between two nodes with these gradients along the first `B` axes [N/m].
     #[inline]
     pub fn between<const B: usize>(&self, gi: &[f64; 3], gj: &[f64; 3]) -> [[f64; B]; B] {
+        if self.around {
+            return self.around_axis(gi, gj);
+        }
         if let Some((stiffness, left)) = self.bedded {
             let whole = stiffness.between(gi, gj);
             return std::array::from_fn(|a| std::array::from_fn(|b| left * whole[a][b]));
@@ -75,6 +102,20 @@ impl SecantCell<'_> {
             std::array::from_fn(|b| {
                 let diagonal = if a == b { dot } else { 0.0 };
                 lambda * gi[a] * gj[b] + mu * (gi[b] * gj[a] + diagonal)
+            })
+        })
+    }
+
+    /// The same around an axis, where displacements along the radius strain the circumference too.
+    fn around_axis<const B: usize>(&self, gi: &[f64; 3], gj: &[f64; 3]) -> [[f64; B]; B] {
+        let [lambda, mu] = self.lame;
+        let volumetric = |g: &[f64; 3], a: usize| if a == 0 { g[0] + g[2] } else { g[a] };
+        let dot = gi[0] * gj[0] + gi[1] * gj[1];
+        std::array::from_fn(|a| {
+            std::array::from_fn(|b| {
+                let diagonal = if a == b { dot } else { 0.0 };
+                let hoop = if a == 0 && b == 0 { 2.0 * gi[2] * gj[2] } else { 0.0 };
+                lambda * volumetric(gi, a) * volumetric(gj, b) + mu * (gi[b] * gj[a] + diagonal + hoop)
             })
         })
     }
@@ -166,13 +207,24 @@ impl Solid {
                     }
                     gradients.push(*g);
                 }
+                gradients[0][2] += cells.hoop(cell).unwrap_or(0.0);
                 let (lambda, mu) = (hooke.lambda * left, hooke.mu * left);
                 let bedded = bedded.as_deref().map(|stiffness| (stiffness, left));
                 let per_strain = |unit: f64| if bedded.is_some() { 1.0 } else { lambda * unit + 2.0 * mu };
                 let thermal = |own: &ThermalStrain| own.now(cell) * per_strain(own.unit.trace());
                 let thermal = cells.thermal.as_deref().map_or(0.0, thermal);
                 let (lame, born) = ([lambda, mu], cells.born.as_ref().map(|born| &born[cell]));
-                work(SecantCell { first_pair, nodes: &nodes, gradients: &gradients, lame, bedded, thermal, born });
+                let around = cells.hoop.is_some();
+                work(SecantCell {
+                    first_pair,
+                    nodes: &nodes,
+                    gradients: &gradients,
+                    around,
+                    lame,
+                    bedded,
+                    thermal,
+                    born,
+                });
             }
         }
     }
@@ -371,14 +423,8 @@ impl Solid {
 fn add_up(solid: &Solid, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
     force.fill(Vec3::zeros());
     solid.for_each_cell(damage, |cell| {
-        let mut h = Mat3::zeros();
-        for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
-            h += field[node as usize] * Vec3::from(*g).transpose();
-        }
-        let stress = cell.stress_beyond(&h, share);
-        for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
-            force[node as usize] += stress * Vec3::from(*g);
-        }
+        let stress = cell.stress_beyond(&cell.gradient(field), share);
+        cell.add_forces(stress, force);
     });
 }
 

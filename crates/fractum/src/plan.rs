@@ -22,7 +22,7 @@ use fractum_case::build::{BuiltScene, TieReport};
 use fractum_case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_fem::{ElementKind, Kinematics, thickness_at};
+use fractum_fem::{Depth, ElementKind, Kinematics, depth_at, facet_area};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
@@ -241,7 +241,14 @@ impl Plan {
             };
             self.add("support", format!("{}: {what}", support.on.label()));
         }
-        let thickness = |line: [u32; 2]| thickness_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
+        let depth = |line: [u32; 2]| depth_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
+        if scene.solid.is_axisymmetric() {
+            let axis = scene.solid.reference.iter().filter(|place| place.x <= 0.0).count();
+            self.add(
+                "axis",
+                format!("y: forces, areas and masses are those of the whole turn; {axis} nodes on it, held along x"),
+            );
+        }
         let delay = |load: &Load| match &load.kind {
             LoadKind::Pressure { pressure, .. } => pressure.value.delay(),
             _ => None,
@@ -271,7 +278,7 @@ impl Plan {
                 Some((on, GroupUse::Facets)) if case.particle_group(on.group_name()).is_some() => {
                     format!("{}, by the part of the walls that each particle shows", on.label())
                 }
-                Some((on, GroupUse::Facets)) => facets_of(mesh, on, scene.solid.is_plane().then_some(&thickness)),
+                Some((on, GroupUse::Facets)) => facets_of(mesh, on, scene.solid.is_plane().then_some(&depth)),
                 Some((on, _)) => on.label().to_owned(),
                 None => "everything".to_owned(),
             };
@@ -483,22 +490,22 @@ fn names(all: &[(bool, &str)]) -> String {
 }
 
 /// The facets that a load acts on, with their area where a group alone tells them.
-fn facets_of(mesh: &Mesh, on: &Selection, thickness: Option<impl Fn([u32; 2]) -> f64>) -> String {
+fn facets_of(mesh: &Mesh, on: &Selection, depth: Option<impl Fn([u32; 2]) -> Depth>) -> String {
     match &on.within {
-        None => format!("{} ({})", on.label(), area_of(mesh, on.group_name(), thickness)),
+        None => format!("{} ({})", on.label(), area_of(mesh, on.group_name(), depth)),
         Some(_) => format!("{} (facets where the condition holds)", on.label()),
     }
 }
 
-/// Area of the facets of a group; in the plane its lines times the thickness there.
-fn area_of(mesh: &Mesh, group: &str, thickness: Option<impl Fn([u32; 2]) -> f64>) -> String {
+/// Area of the facets of a group; in the plane its lines times the depth there.
+fn area_of(mesh: &Mesh, group: &str, depth: Option<impl Fn([u32; 2]) -> Depth>) -> String {
     let mut area = 0.0;
     for group in mesh.group(group) {
-        if let Some(thickness) = &thickness {
+        if let Some(depth) = &depth {
             let areas = group.lines.iter().map(|&line| {
                 let ends = mesh.lines[line as usize];
                 let [a, b] = ends.map(|n| mesh.nodes[n as usize]);
-                (b - a).norm() * thickness(ends)
+                facet_area([a, b, b], Some(depth(ends))).norm()
             });
             area += areas.sum::<f64>();
             continue;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fractum_fem::{Solid, facet_area, facet_thickness};
+use fractum_fem::{Depth, Solid, facet_area, facet_depth};
 use fractum_math::Vec3;
 use fractum_mesh::quality::{area_vector, signed_volume};
 use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
@@ -240,25 +240,28 @@ pub(super) enum LoadedPoints<'a> {
 pub(super) struct Surface<'a> {
     pub(super) facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
-    is_plane: bool,
-    /// Thickness behind each facet where bodies are plane [m].
-    thickness: HashMap<[u32; 3], f64>,
+    pub(super) is_plane: bool,
+    /// Depth behind each facet where bodies are plane.
+    depth: HashMap<[u32; 3], Depth>,
     positions: &'a [Vec3],
 }
 
 impl<'a> Surface<'a> {
     pub(super) fn new(boundary: &'a [[u32; 3]], solid: &Solid, positions: &'a [Vec3]) -> Self {
-        let is_plane = solid.is_plane();
-        let edges = boundary.iter().filter(|_| is_plane);
-        let thickness = edges.map(|facet| (sorted(*facet), facet_thickness(solid, facet))).collect();
+        let depth = boundary.iter().filter_map(|facet| Some((sorted(*facet), facet_depth(solid, facet)?))).collect();
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
-        Surface { facets: boundary, by_nodes, is_plane, thickness, positions }
+        Surface { facets: boundary, by_nodes, is_plane: solid.is_plane(), depth, positions }
     }
 
-    /// Outward normal of a facet without load, as long as its area [m²].
+    /// Outward normal of a facet without load, as long as its area [m²]: around an axis that of the whole turn.
     pub(super) fn area_vector(&self, facet: &[u32; 3]) -> Vec3 {
         let corners = facet.map(|n| self.positions[n as usize]);
-        facet_area(corners, self.is_plane.then(|| self.thickness.get(&sorted(*facet)).copied().unwrap_or_default()))
+        facet_area(corners, self.depth_of(facet))
+    }
+
+    /// Depth behind a facet of the surface; none in space.
+    pub(super) fn depth_of(&self, facet: &[u32; 3]) -> Option<Depth> {
+        self.depth.get(&sorted(*facet)).copied()
     }
 
     /// Middle of a facet without load [m].
@@ -281,8 +284,13 @@ impl<'a> Surface<'a> {
     pub(super) fn areas(&self, facets: &[[u32; 3]]) -> Vec<(u32, f64)> {
         let mut shares: Vec<(u32, f64)> = Vec::new();
         for facet in facets {
-            let corners = self.corners(facet);
-            let share = self.area_vector(facet).norm() / corners.len() as f64;
+            let (corners, area) = (self.corners(facet), self.area_vector(facet).norm());
+            if self.depth_of(facet) == Some(Depth::Turn) {
+                let ends = [0, 1].map(|end| &self.positions[facet[end] as usize]);
+                shares.extend(corners.iter().zip(Depth::Turn.shares(ends)).map(|(&node, share)| (node, share * area)));
+                continue;
+            }
+            let share = area / corners.len() as f64;
             shares.extend(corners.iter().map(|&node| (node, share)));
         }
         shares.sort_by_key(|s| s.0);

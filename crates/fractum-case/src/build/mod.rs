@@ -2,6 +2,7 @@
 //! reported with its place in the case file.
 
 mod across_plane;
+mod axisymmetric;
 mod bodies;
 mod body_doubts;
 mod bonded;
@@ -194,6 +195,7 @@ impl<'a> Context<'a> {
         let mut parts = bodies::solid_parts(self)?;
         ties::take_out(self, &mut parts, &taken);
         across_plane::check(self, &parts);
+        axisymmetric::check(self, &parts);
         self.without_mistakes()?;
         let numbering = bodies::number_nodes(self, &parts);
         let mut boundary = bodies::boundary(self, &parts, &numbering, &[]);
@@ -327,7 +329,8 @@ impl<'a> Context<'a> {
         surface: &Surface,
         boundary_of_parts: &[Vec<[u32; 3]>],
     ) -> Option<(Supports, SurfaceSupports, Loads)> {
-        let supports = self.supports(numbering);
+        let mut supports = self.supports(numbering);
+        supports.extend(self.on_axis(parts, numbering, &supports));
         let (surface_supports, supported) = self.surface_supports(parts, numbering, surface, solid, boundary_of_parts);
         let in_situ = in_situ::in_situ_loads(self, numbering, surface, solid, supported);
         let points = LoadedPoints::Nodes(numbering, surface);

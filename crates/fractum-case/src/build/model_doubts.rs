@@ -168,7 +168,8 @@ fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
     let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
     let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction(_) | ProbeKind::ContactForce(_));
     let forces = case.loads.iter().any(force) || case.probes.iter().any(in_newton);
-    if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || !forces {
+    if !body.plane || body.nodes.is_empty() || body.solid.thickness.is_some() || body.solid.is_axisymmetric() || !forces
+    {
         return None;
     }
     let found = format!(

@@ -48,6 +48,11 @@ impl Context<'_> {
                         (&mut elastic, SupportedFacet::along_and_across(normal, [along, tangential]))
                     }
                 };
+                if solid.is_axisymmetric() {
+                    let of_node = |(node, area)| SupportedFacet { nodes: [node; 3], area, answer };
+                    supports.extend(surface.areas(&[*facet]).into_iter().map(of_node));
+                    continue;
+                }
                 supports.push(SupportedFacet { nodes: *facet, area, answer });
             }
             all.extend(facets);

@@ -1,6 +1,6 @@
 //! Bodies: meshed solids, bonded and loose particles, rigid bodies.
 
-use fractum_fem::{Formulation, Kinematics, Plane};
+use fractum_fem::{Depth, Formulation, Kinematics, Plane};
 use fractum_scene::ContactParameters;
 
 use super::{BondedBody, LooseBody, Material, RigidBody};
@@ -53,7 +53,7 @@ pub struct SolidBody {
     pub formulation: Formulation,
     /// Small or large rotations.
     pub kinematics: Kinematics,
-    /// Plane state, for two-dimensional meshes only (`None` there = plane strain); the place is there to refuse it in
+    /// Plane state or axial symmetry, for two-dimensional meshes only (`None` there = plane strain); the place is there to refuse it in
     /// 3D.
     pub plane: Option<Spanned<Plane>>,
     /// Thickness [m], > 0, for two-dimensional meshes only (`None` there = 1 m); the place is there to refuse it in 3D.
@@ -76,6 +76,16 @@ impl SolidBody {
         materials[self.material].contact
     }
 
+    /// Whether it is turned about the y axis.
+    pub fn is_axisymmetric(&self) -> bool {
+        self.plane.as_ref().is_some_and(|plane| plane.value == Plane::Axisymmetric)
+    }
+
+    /// How far it extends across its plane, where it is plane.
+    pub fn across(&self) -> Depth {
+        if self.is_axisymmetric() { Depth::Turn } else { Depth::Thickness(self.depth) }
+    }
+
     /// Whether each of several processes needs the cells of all: edges of plain elements gather stresses around them.
     pub fn needs_all_cells(&self) -> bool {
         self.damage && self.formulation == Formulation::Standard
@@ -89,4 +99,4 @@ impl SolidBody {
 
 choice!(Formulation { "smoothed" => Smoothed, "standard" => Standard });
 choice!(Kinematics { "auto" => Auto, "small" => Small, "corotational" => Corotational });
-choice!(Plane { "strain" => Strain, "stress" => Stress });
+choice!(Plane { "strain" => Strain, "stress" => Stress, "axisymmetric" => Axisymmetric });

@@ -1,6 +1,7 @@
 //! Scenes built from cases on meshes made here: what names, groups and conditions become.
 
 mod about_axis;
+mod axisymmetric;
 mod bedding;
 mod blast;
 mod contact_force;

@@ -72,6 +72,13 @@ impl Elasticity {
         gradients.iter().map(|g| g.dot(&(all * g))).sum()
     }
 
+    /// What the hoop strains of the three nodes of an element around an axis add to [`Elasticity::trace_sum`].
+    ///
+    /// - `hoop`: its inverse radius, else 0 [1/m]
+    pub(crate) fn hoop_trace(&self, hoop: f64) -> f64 {
+        (self.hooke.lambda + 2.0 * self.hooke.mu) * hoop * hoop / 3.0
+    }
+
     /// Sum of ρ c² of the three waves along the direction where it is largest [Pa].
     pub(crate) fn largest_trace(&self) -> f64 {
         match &self.bedded {

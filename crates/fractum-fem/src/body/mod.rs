@@ -10,6 +10,7 @@ use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use self::rate::RateCurves;
+use crate::element::Depth;
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -110,9 +111,9 @@ pub struct Body {
     pub formulation: Formulation,
     /// Measure of strain.
     pub kinematics: Kinematics,
-    /// State across the thickness (T3 only).
+    /// State across the thickness, or whether it is turned about the y axis (T3 only).
     pub plane: Plane,
-    /// Thickness [m] (T3 only).
+    /// Thickness [m] (T3 only, not of an axisymmetric body).
     pub thickness: f64,
     /// Damage, or none for an elastic body.
     pub damage: Option<DamageZone>,
@@ -154,9 +155,14 @@ impl Body {
         Body { damage: Some(zone), ..self }
     }
 
-    /// What it assumes across its thickness; nothing in space.
+    /// What it assumes across its thickness; nothing in space and around an axis.
     fn across(&self) -> Option<Plane> {
-        (self.shape == ElementKind::T3).then_some(self.plane)
+        (self.shape == ElementKind::T3 && self.plane != Plane::Axisymmetric).then_some(self.plane)
+    }
+
+    /// Whether it is turned about the y axis.
+    pub fn is_axisymmetric(&self) -> bool {
+        self.depth() == Some(Depth::Turn)
     }
 
     /// Its elastic law without beds.
@@ -220,8 +226,15 @@ impl Body {
         if self.shape == ElementKind::T3 { extents[1] } else { extents[0] }
     }
 
-    /// What makes a volume of the measure of an element: the thickness of triangles [m], 1 for tetrahedra.
-    pub(crate) fn depth(&self) -> f64 {
-        if self.shape == ElementKind::T3 { self.thickness } else { 1.0 }
+    /// How far it extends across its plane; nothing in space.
+    pub fn depth(&self) -> Option<Depth> {
+        let of_plane = if self.plane == Plane::Axisymmetric { Depth::Turn } else { Depth::Thickness(self.thickness) };
+        (self.shape == ElementKind::T3).then_some(of_plane)
+    }
+
+    /// What makes a volume of the measure of an element with these corners: its depth [m], 1 for tetrahedra.
+    pub(crate) fn depth_of(&self, corners: &[Vec3; 4]) -> f64 {
+        let middle = || (corners[0] + corners[1] + corners[2]) / 3.0;
+        self.depth().map_or(1.0, |depth| depth.at(&middle()))
     }
 }

@@ -11,7 +11,7 @@ use crate::error::SolidError;
 
 /// Geometry of the cells of a block.
 ///
-/// A cell is a base node, n more nodes and n gradients: grad u = Σ (u_k - u_base) ⊗ g_k.
+/// A cell is a base node, n more nodes and n gradients: grad u = Σ (u_k - u_base) ⊗ g_k. Around an axis it has a hoop strain beside.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cells {
     /// Global index of each local node.
@@ -24,6 +24,9 @@ pub(crate) struct Cells {
     pub(crate) gradients: Vec<[f64; 3]>,
     /// Volume of each cell [m³].
     pub(crate) volume: Vec<f64>,
+    /// Of cells around an axis the sum of what their nodes weigh in the hoop strain ∫ u_r/r dV/V = Σ w_k u_r [1/m]; the third component of each
+    /// gradient is then w_k.
+    pub(crate) hoop: Option<Box<[f64]>>,
     /// Runs of cells with as many gradients each, for loops of a length known to the compiler.
     pub(crate) runs: Vec<Run>,
     /// Thermal strains, where the body expands.
@@ -122,8 +125,23 @@ impl Cells {
             y = y + d * Lane::splat(g[1]);
             z = z + d * Lane::splat(g[2]);
         }
+        let z = self.hoop(cell).map_or(z, |hoop| hoop_column(z, Lane::from_vec(&base), hoop));
         columns_to_matrix(x, y, z)
     }
+
+    /// What the nodes of a cell around an axis weigh together in its hoop strain [1/m].
+    #[inline(always)]
+    pub(crate) fn hoop(&self, cell: usize) -> Option<f64> {
+        self.hoop.as_ref().map(|hoop| hoop[cell])
+    }
+}
+
+/// Third column of the displacement gradient of a cell around an axis, the hoop strain, from the sum that other cells have there.
+///
+/// - `base`: displacement of the base node
+#[inline(always)]
+pub(crate) fn hoop_column(sum: Lane, base: Lane, hoop: f64) -> Lane {
+    Lane([0.0, 0.0, sum.0[0] + hoop * base.0[0], 0.0])
 }
 
 /// Columns of a displacement gradient from lanes.

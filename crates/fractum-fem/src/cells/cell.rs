@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::body::Body;
 use crate::body::edges::BodyEdges;
 use crate::cells::block::{BLOCK_NODES, Cells, Run};
-use crate::element::measure_and_gradients;
+use crate::element::{measure_and_gradients, regular_edge};
 use crate::error::SolidError;
 
 /// Cells per block: its displacements, forces and geometry fit the second-level cache.
@@ -42,8 +42,24 @@ impl Geometry<'_> {
 
     /// Volume [m³] and gradients of an element.
     pub(crate) fn element(&self, element: usize) -> (f64, [Vec3; 4]) {
-        let (measure, gradients) = measure_and_gradients(self.body.shape, &self.corners(element));
-        (measure * self.body.depth(), gradients)
+        let corners = self.corners(element);
+        let (measure, gradients) = measure_and_gradients(self.body.shape, &corners);
+        (measure * self.body.depth_of(&corners), gradients)
+    }
+
+    /// Edge of the regular element of the measure of an element of this volume [m].
+    pub(crate) fn size(&self, element: u32, volume: f64) -> f64 {
+        regular_edge(self.body.shape, volume / self.body.depth_of(&self.corners(element as usize)))
+    }
+
+    /// Inverse radius of the middle of an element of an axisymmetric body, else 0 [1/m]: times the mean displacement away from the axis it is
+    /// the hoop strain.
+    pub(crate) fn hoop(&self, element: usize) -> f64 {
+        if !self.body.is_axisymmetric() {
+            return 0.0;
+        }
+        let [a, b, c, _] = self.corners(element);
+        3.0 / (a.x + b.x + c.x)
     }
 
     /// Volumes of all elements [m³].
@@ -70,7 +86,7 @@ impl Geometry<'_> {
         [ends.as_slice(), &ring].concat()
     }
 
-    /// Volume of the domain of an edge and the gradients of its nodes, from the elements that are alive.
+    /// Volume of the domain of an edge, its [`Cells::hoop`], and the gradients of its nodes, from the elements that are alive.
     ///
     /// `gradients` gets one entry per node of `nodes` after the first.
     pub(crate) fn edge_domain(
@@ -79,14 +95,15 @@ impl Geometry<'_> {
         elements: &[u32],
         alive: impl Fn(u32) -> bool,
         gradients: &mut [[f64; 3]],
-    ) -> f64 {
+    ) -> [f64; 2] {
         gradients.fill([0.0; 3]);
         let share = 1.0 / self.body.shape.edge_count() as f64;
-        let mut total = 0.0;
+        let (mut total, mut hoop) = (0.0, 0.0);
         for &element in elements.iter().filter(|&&e| alive(e)) {
-            let (volume, g) = self.element(element as usize);
+            let (volume, g) = self.element_weights(element);
             let volume = volume * share;
             total += volume;
+            hoop += volume * self.hoop(element as usize);
             for (node, g) in self.element_nodes(element as usize).iter().zip(g) {
                 let place = nodes.iter().position(|n| n == node).expect("the cell of an edge holds its elements");
                 if place > 0 {
@@ -97,8 +114,9 @@ impl Geometry<'_> {
         }
         if total > 0.0 {
             gradients.iter_mut().for_each(|g| *g = g.map(|c| c / total));
+            hoop /= total;
         }
-        total
+        [total, hoop]
     }
 
     /// Cells of some items, which touch at most [`BLOCK_NODES`] nodes.
@@ -112,13 +130,21 @@ impl Geometry<'_> {
         is_alive: impl Fn(u32) -> bool + Copy,
     ) -> Cells {
         let rows: Vec<Vec<u32>> = items.iter().map(|&item| self.row(item, edges)).collect();
-        build_block(&rows, |cell, nodes, gradients| match edges {
-            Some(edges) => self.edge_domain(nodes, &edges.around(items[cell]), is_alive, gradients),
+        let mut hoop = Vec::new();
+        let mut cells = build_block(&rows, |cell, nodes, gradients| match edges {
+            Some(edges) => {
+                let [volume, own] = self.edge_domain(nodes, &edges.around(items[cell]), is_alive, gradients);
+                hoop.push(own);
+                volume
+            }
             None => {
                 let volume = self.element_cell(items[cell], gradients);
+                hoop.push(self.hoop(items[cell] as usize));
                 if is_alive(items[cell]) { volume } else { 0.0 }
             }
-        })
+        });
+        cells.hoop = self.body.is_axisymmetric().then(|| hoop.into());
+        cells
     }
 
     /// Nodes of the cell of an item.
@@ -129,9 +155,18 @@ impl Geometry<'_> {
         }
     }
 
+    /// Volume of an element [m³], and the gradients of its shape functions with those for the hoop strain, see [`Cells::hoop`].
+    fn element_weights(&self, element: u32) -> (f64, [Vec3; 4]) {
+        let (volume, mut gradients) = self.element(element as usize);
+        if self.body.is_axisymmetric() {
+            gradients[..3].iter_mut().for_each(|g| g.z = self.hoop(element as usize) / 3.0);
+        }
+        (volume, gradients)
+    }
+
     /// Volume [m³] and gradients of the cell of an element.
     fn element_cell(&self, element: u32, gradients: &mut [[f64; 3]]) -> f64 {
-        let (volume, g) = self.element(element as usize);
+        let (volume, g) = self.element_weights(element);
         for (stored, g) in gradients.iter_mut().zip(&g[1..]) {
             *stored = [g.x, g.y, g.z];
         }
@@ -215,7 +250,7 @@ fn split_to_fit(items: &[u32], row: impl Fn(u32) -> Vec<u32> + Copy) -> Vec<Bund
 }
 
 /// Lays out the cells of a block; `fill` returns the volume of a cell and writes its gradients.
-fn build_block(rows: &[Vec<u32>], fill: impl Fn(usize, &[u32], &mut [[f64; 3]]) -> f64) -> Cells {
+fn build_block(rows: &[Vec<u32>], mut fill: impl FnMut(usize, &[u32], &mut [[f64; 3]]) -> f64) -> Cells {
     let mut nodes: Vec<u32> = rows.concat();
     nodes.sort_unstable();
     nodes.dedup();

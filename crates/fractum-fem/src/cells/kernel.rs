@@ -4,7 +4,7 @@ use fractum_math::{FOUR, Lane, Mat3, Sym3, Vec3, widest};
 
 use crate::body::Kinematics;
 use crate::body::elasticity::Elasticity;
-use crate::cells::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix};
+use crate::cells::block::{BLOCK_NODES, Cells, Run, Scratch, columns_to_matrix, hoop_column};
 use crate::cells::law::CellLaw;
 use crate::cells::viscosity::{BodyViscosity, ViscousCells};
 use crate::element::four_turns::FourGradients;
@@ -47,8 +47,16 @@ fn slot(local: u16) -> usize {
     usize::from(local) & (BLOCK_NODES - 1)
 }
 
+/// Displacement gradient of a cell by columns.
+///
+/// - `hoop`: of a cell around an axis, see [`Cells::hoop`]
 #[inline(always)]
-pub(crate) fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], gradients: &[[f64; 3]]) -> [Lane; 3] {
+pub(crate) fn gradient_columns(
+    values: &[Lane; BLOCK_NODES],
+    local: &[u16],
+    gradients: &[[f64; 3]],
+    hoop: Option<f64>,
+) -> [Lane; 3] {
     let base = values[slot(local[0])];
     let (mut x, mut y, mut z) = (Lane::ZERO, Lane::ZERO, Lane::ZERO);
     for (&node, g) in local[1..].iter().zip(gradients) {
@@ -57,7 +65,7 @@ pub(crate) fn gradient_columns(values: &[Lane; BLOCK_NODES], local: &[u16], grad
         y = y.plus(d, g[1]);
         z = z.plus(d, g[2]);
     }
-    [x, y, z]
+    [x, y, hoop.map_or(z, |hoop| hoop_column(z, base, hoop))]
 }
 
 #[inline(always)]
@@ -65,8 +73,13 @@ pub(crate) fn add_cell_forces(
     force: &mut [Lane; BLOCK_NODES],
     local: &[u16],
     gradients: &[[f64; 3]],
-    stress: [Lane; 3],
+    mut stress: [Lane; 3],
+    hoop: Option<f64>,
 ) {
+    if hoop.is_some() {
+        // The hoop stress pulls along the radius.
+        stress[2] = Lane([stress[2].0[2], 0.0, 0.0, 0.0]);
+    }
     let mut sum = Lane::ZERO;
     for (&node, g) in local[1..].iter().zip(gradients) {
         let f = Lane::ZERO.plus(stress[0], g[0]).plus(stress[1], g[1]).plus(stress[2], g[2]);
@@ -75,6 +88,9 @@ pub(crate) fn add_cell_forces(
     }
     let base = slot(local[0]);
     force[base] = force[base] + sum;
+    if let Some(hoop) = hoop {
+        force[base] = force[base] - stress[2] * Lane::splat(hoop);
+    }
 }
 
 #[inline(always)]
@@ -129,6 +145,7 @@ fn forces_by_runs<const COROTATIONAL: bool, L: CellLaw>(
             continue;
         }
         match run.gradients {
+            _ if cells.hoop.is_some() => sweep.long_run(cells, run),
             2 => sweep.run::<2>(cells, run),
             3 => sweep.run::<3>(cells, run),
             4 => sweep.run::<4>(cells, run),
@@ -180,16 +197,16 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         let local = cells.local[start + begin..].chunks_exact(N + 1);
         let volume = &cells.volume[begin..end];
         for (((cell, gradients), local), &volume) in (begin..end).zip(gradients).zip(local).zip(volume) {
-            self.cell(cell, local, gradients, volume);
+            self.cell(cell, local, gradients, volume, None);
         }
     }
 
     /// Cells that turn, four at a time, where only what touches nodes is written out for each number of gradients. Returns the next ones that must
-    /// be done alone: those of many nodes, four of which one is stretched far, or the last of the run.
+    /// be done alone: those of many nodes or around an axis, four of which one is stretched far, or the last of the run.
     #[inline(always)]
     fn turning_run(&mut self, cells: &Cells, run: Run) -> Run {
         let Run { mut begin, end, gradients: count } = run;
-        if !(2..=8).contains(&count) {
+        if !(2..=8).contains(&count) || cells.hoop.is_some() {
             return run;
         }
         while begin + FOUR <= end {
@@ -232,7 +249,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
         // Loops instead of closures: those might be compiled apart, for any processor.
         for k in 0..FOUR {
             let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            columns[k] = gradient_columns(&self.scratch.displacement, local, gradients);
+            columns[k] = gradient_columns(&self.scratch.displacement, local, gradients, None);
         }
     }
 
@@ -241,28 +258,29 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
     fn scatter<const N: usize>(&mut self, local: &[u16], gradients: &[[f64; 3]], columns: &[[Lane; 3]; FOUR]) {
         for k in 0..FOUR {
             let (local, gradients) = (&local[k * (N + 1)..(k + 1) * (N + 1)], &gradients[k * N..(k + 1) * N]);
-            add_cell_forces(&mut self.scratch.force, local, gradients, columns[k]);
+            add_cell_forces(&mut self.scratch.force, local, gradients, columns[k], None);
         }
     }
 
-    /// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others.
+    /// A run of cells with many nodes: at the axes of structured meshes, and around the long edges of others; or of cells around an axis.
     #[inline(always)]
     fn long_run(&mut self, cells: &Cells, run: Run) {
         for cell in run.begin..run.end {
             let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
-            self.cell(cell, local, gradients, cells.volume[cell]);
+            self.cell(cell, local, gradients, cells.volume[cell], cells.hoop(cell));
         }
     }
 
     #[inline(always)]
-    fn cell(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64) {
+    fn cell(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64, hoop: Option<f64>) {
         // All elements of the cell have been removed.
         if volume == 0.0 {
             return;
         }
-        let (strain, turn) = self.strain(cell, local, gradients, volume);
+        let columns = gradient_columns(&self.scratch.displacement, local, gradients, hoop);
+        let (strain, turn) = self.strain(cell, columns, volume);
         let stress = self.law.scaled_stress(cell, strain, volume);
-        add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, strain, &turn));
+        add_cell_forces(&mut self.scratch.force, local, gradients, Self::stress_columns(stress, strain, &turn), hoop);
     }
 
     /// Four cells of `N` gradients each that do not turn.
@@ -311,8 +329,7 @@ impl<const COROTATIONAL: bool, L: CellLaw> Sweep<'_, COROTATIONAL, L> {
 
     /// Strain of a cell, and how it turns.
     #[inline(always)]
-    fn strain(&mut self, cell: usize, local: &[u16], gradients: &[[f64; 3]], volume: f64) -> (Sym3, Turn) {
-        let [x, y, z] = gradient_columns(&self.scratch.displacement, local, gradients);
+    fn strain(&mut self, cell: usize, [x, y, z]: [Lane; 3], volume: f64) -> (Sym3, Turn) {
         if !COROTATIONAL {
             return (small_strain(x, y, z), Turn::default());
         }
@@ -393,8 +410,8 @@ fn viscous_forces_by_cell<L: CellLaw>(
     let (mut dissipated_power, mut inverted) = (0.0, None);
     for cell in 0..cells.len() {
         let (local, gradients) = (cells.local_nodes(cell), &cells.gradients[cells.range(cell)]);
-        let volume = cells.volume[cell];
-        let [x, y, z] = gradient_columns(displacement, local, gradients);
+        let (volume, hoop) = (cells.volume[cell], cells.hoop(cell));
+        let [x, y, z] = gradient_columns(displacement, local, gradients, hoop);
         let (strain, rotation) = if corotational {
             let h = columns_to_matrix(x, y, z);
             if inverted.is_none() && is_inverted(&h) && volume > 0.0 && law.integrity(cell) > CARRIES {
@@ -407,7 +424,7 @@ fn viscous_forces_by_cell<L: CellLaw>(
         let elastic = law.scaled_stress(cell, strain, volume);
         let (mut stress, mut viscous) = (elastic, Mat3::zeros());
         if let Some(velocity) = velocity.as_deref() {
-            let [x, y, z] = gradient_columns(velocity, local, gradients);
+            let [x, y, z] = gradient_columns(velocity, local, gradients, hoop);
             let rate = Sym3::symmetric_part(&(rotation.transpose() * columns_to_matrix(x, y, z)));
             // The mean of the stress at both ends of the step, at the rate between them.
             let [now, mean] = of_cells.update(viscosity, elasticity, cell, rate, [law.integrity(cell), volume]);
@@ -422,7 +439,7 @@ fn viscous_forces_by_cell<L: CellLaw>(
             true => turned_columns(&rotation, stress),
             false => symmetric_columns(stress),
         };
-        add_cell_forces(force, local, gradients, columns);
+        add_cell_forces(force, local, gradients, columns, hoop);
     }
     (dissipated_power, inverted)
 }
@@ -468,7 +485,7 @@ mod tests {
                 scratch.load(&cells.nodes, displacement);
                 scratch.load_velocity(&cells.nodes, velocity);
                 let mut law = ElasticCells { elasticity: model.elasticity.hooke, energy: Some(0.0) };
-                let mut of_cells = ViscousCells::new(&model.body, &cells.volume);
+                let mut of_cells = ViscousCells::new(&model.body, cells);
                 let mut power = 0.0;
                 match viscous {
                     false => {

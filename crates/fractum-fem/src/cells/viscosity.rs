@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::elasticity::Elasticity;
 use crate::body::{Body, ElementKind, Formulation};
-use crate::element::regular_edge;
+use crate::cells::block::Cells;
+use crate::element::{Depth, regular_edge};
 
 /// Viscous stress: β D ε̇, and a bulk viscosity for shocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -53,16 +54,25 @@ pub(crate) struct ViscousCells {
 }
 
 impl ViscousCells {
-    /// Cells of the given volumes [m³].
-    pub(crate) fn new(body: &Body, volumes: &[f64]) -> Self {
+    /// Cells of a body.
+    pub(crate) fn new(body: &Body, Cells { volume, hoop, .. }: &Cells) -> Self {
         // An edge has a share of every element around it: two triangles give a third each, some five tetrahedra a sixth.
         let share = match (body.formulation, body.shape) {
             (Formulation::Standard, _) => 1.0,
             (Formulation::Smoothed, ElementKind::T3) => 2.0 / 3.0,
             (Formulation::Smoothed, ElementKind::T4) => 5.0 / 6.0,
         };
-        let length = volumes.iter().map(|v| regular_edge(body.shape, v / (share * body.depth()))).collect();
-        ViscousCells { stress: vec![Sym3::ZERO; volumes.len()], length, shock: 0.0 }
+        let depth = |cell: usize| match (body.depth(), hoop) {
+            (None, _) => 1.0,
+            (Some(Depth::Thickness(thickness)), _) => thickness,
+            (Some(Depth::Turn), hoop) => hoop.as_ref().map_or(1.0, |hoop| 2.0 * std::f64::consts::PI / hoop[cell]),
+        };
+        let length = |(cell, v): (usize, &f64)| regular_edge(body.shape, v / (share * depth(cell)));
+        ViscousCells {
+            stress: vec![Sym3::ZERO; volume.len()],
+            length: volume.iter().enumerate().map(length).collect(),
+            shock: 0.0,
+        }
     }
 
     /// Lets go of what only those need who evaluate the cells.

@@ -4,8 +4,8 @@ use fractum_math::elementary::asin;
 use fractum_math::{Sym3, Vec3};
 
 use crate::body::edges::BodyEdges;
+use crate::cells::cell::Geometry;
 use crate::damage::edge::EdgeField;
-use crate::element::regular_edge;
 use crate::fields::element_fields::cells_with;
 use crate::motion::phase_damage::element_phase;
 use crate::solid::Solid;
@@ -182,8 +182,9 @@ pub fn cost_of_bands(solid: &Solid, body: usize) -> Option<f64> {
 pub fn size_along_cracks(solid: &Solid, body: usize) -> Option<f64> {
     let model = &solid.bodies[body];
     let cracked = element_phase(solid, body)?;
-    let sizes = solid.element_volumes(body).iter().zip(cracked).filter(|(_, phase)| *phase > 0.5);
-    let sizes = sizes.map(|(volume, _)| regular_edge(model.body.shape, volume / model.body.depth()));
+    let geometry = Geometry { body: &model.body, nodes: &solid.reference };
+    let sizes = (0..).zip(solid.element_volumes(body)).zip(cracked).filter(|(_, phase)| *phase > 0.5);
+    let sizes = sizes.map(|((element, &volume), _)| geometry.size(element, volume));
     let (sum, count) = sizes.fold((0.0, 0.0), |(sum, count), size| (sum + size, count + 1.0));
     (count > 0.0).then(|| sum / count)
 }

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::ElementKind;
 use crate::element::{facet_area, measure_and_gradients, regular_edge};
 use crate::solid::Solid;
-use crate::solid::thickness::facet_thickness;
+use crate::solid::thickness::facet_depth;
 
 const NONE: u32 = u32::MAX;
 
@@ -294,16 +294,16 @@ impl CrackCell {
     }
 }
 
-/// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times thickness.
+/// Area times unit normal of a facet with its nodes at these places [m²]; of an edge in the plane length times depth.
 pub fn area_at(solid: &Solid, nodes: &[u32; 3], at: impl Fn(u32) -> Vec3) -> Vec3 {
-    facet_area(nodes.map(at), (nodes[1] == nodes[2]).then(|| facet_thickness(solid, nodes)))
+    facet_area(nodes.map(at), facet_depth(solid, nodes))
 }
 
 /// Volume of an element at tⁿ [m³]; negative where it is turned inside out.
 pub fn present_volume(solid: &Solid, body: usize, element: u32) -> f64 {
     let body = &solid.bodies[body].body;
     let places = body.elements[element as usize].map(|node| solid.position(node as usize));
-    measure_and_gradients(body.shape, &places).0 * body.depth()
+    measure_and_gradients(body.shape, &places).0 * body.depth_of(&places)
 }
 
 /// Characteristic length of an element: the mean over its edges that may be damaged, else the edge of the regular

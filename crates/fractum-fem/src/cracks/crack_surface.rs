@@ -6,6 +6,7 @@
 use fractum_math::{Ragged, Vec3};
 
 use crate::body::ElementKind;
+use crate::element::facet_area;
 use crate::solid::{BodyModel, Solid};
 
 /// Sides of a tetrahedron as its neighbours see them, counter-clockwise from inside it: nodes, the opposite node, and an
@@ -30,7 +31,7 @@ pub struct CrackFacet {
     pub nodes: [u32; 3],
     /// Present centre [m].
     pub centre: Vec3,
-    /// Present area; length times thickness in the plane [m²].
+    /// Present area; length times depth in the plane [m²].
     pub area: f64,
     /// Present unit normal, into the crack.
     pub normal: Vec3,
@@ -106,9 +107,7 @@ fn crack_facet(solid: &Solid, body: usize, element: u32, removed: u32, nodes: [u
     let [a, b, c] = nodes.map(|node| solid.position(node as usize));
     let moved = nodes.map(|node| solid.displacement[node as usize]);
     let (area, centre, mean) = if nodes[1] == nodes[2] {
-        let along = b - a;
-        let thickness = solid.bodies[body].body.thickness;
-        (Vec3::new(along.y, -along.x, 0.0) * thickness, (a + b) * 0.5, (moved[0] + moved[1]) * 0.5)
+        (facet_area([a, b, c], solid.bodies[body].body.depth()), (a + b) * 0.5, (moved[0] + moved[1]) * 0.5)
     } else {
         ((b - a).cross(&(c - a)) * 0.5, (a + b + c) / 3.0, (moved[0] + moved[1] + moved[2]) / 3.0)
     };

@@ -90,11 +90,11 @@ fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet
     surface.facets.iter().zip(areas).map(facet).collect()
 }
 
-/// Area of a facet times its normal without load; of a side in the plane its length times the thickness [m²].
+/// Area of a facet times its normal without load; of a side in the plane its length times the depth [m²].
 fn area_without_load(solid: &Solid, facet: &CrackFacet) -> Vec3 {
     let plane = facet.nodes[1] == facet.nodes[2];
     let corners = facet.nodes.map(|node| solid.reference[node as usize]);
-    facet_area(corners, plane.then_some(solid.body(facet.body).thickness))
+    facet_area(corners, solid.body(facet.body).depth().filter(|_| plane))
 }
 
 /// The crack that each of these removed elements is part of, numbered in their order, and how many cracks there are;

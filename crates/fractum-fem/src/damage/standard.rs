@@ -269,14 +269,15 @@ widest! {
 fn stresses_by_runs(cells: &Cells, displacement: &[Lane; BLOCK_NODES], law: &mut StandardCells) {
     for run in &cells.runs {
         match run.gradients {
-            2 => stresses_of_run::<2>(cells, run, displacement, law),
-            _ => stresses_of_run::<3>(cells, run, displacement, law),
+            2 if cells.hoop.is_some() => stresses_of_run::<2, true>(cells, run, displacement, law),
+            2 => stresses_of_run::<2, false>(cells, run, displacement, law),
+            _ => stresses_of_run::<3, false>(cells, run, displacement, law),
         }
     }
 }
 
 #[inline(always)]
-fn stresses_of_run<const N: usize>(
+fn stresses_of_run<const N: usize, const HOOP: bool>(
     cells: &Cells,
     run: &Run,
     displacement: &[Lane; BLOCK_NODES],
@@ -286,7 +287,8 @@ fn stresses_of_run<const N: usize>(
     let gradients = cells.gradients[start..].as_chunks::<N>().0;
     let local = cells.local[start + run.begin..].chunks_exact(N + 1);
     for ((cell, gradients), local) in (run.begin..run.end).zip(gradients).zip(local) {
-        let [x, y, z] = gradient_columns(displacement, local, gradients);
+        let hoop = if HOOP { cells.hoop(cell) } else { None };
+        let [x, y, z] = gradient_columns(displacement, local, gradients, hoop);
         law.see(cell, small_strain(x, y, z));
     }
 }
@@ -300,14 +302,20 @@ widest! {
 fn forces_by_runs(cells: &Cells, force: &mut [Lane; BLOCK_NODES], law: &StandardCells) {
     for run in &cells.runs {
         match run.gradients {
-            2 => forces_of_run::<2>(cells, run, force, law),
-            _ => forces_of_run::<3>(cells, run, force, law),
+            2 if cells.hoop.is_some() => forces_of_run::<2, true>(cells, run, force, law),
+            2 => forces_of_run::<2, false>(cells, run, force, law),
+            _ => forces_of_run::<3, false>(cells, run, force, law),
         }
     }
 }
 
 #[inline(always)]
-fn forces_of_run<const N: usize>(cells: &Cells, run: &Run, force: &mut [Lane; BLOCK_NODES], law: &StandardCells) {
+fn forces_of_run<const N: usize, const HOOP: bool>(
+    cells: &Cells,
+    run: &Run,
+    force: &mut [Lane; BLOCK_NODES],
+    law: &StandardCells,
+) {
     let start = cells.starts[run.begin] as usize;
     let gradients = cells.gradients[start..].as_chunks::<N>().0;
     let local = cells.local[start + run.begin..].chunks_exact(N + 1);
@@ -316,7 +324,8 @@ fn forces_of_run<const N: usize>(cells: &Cells, run: &Run, force: &mut [Lane; BL
         // A removed element has none.
         if volume > 0.0 {
             let stress = law.stress[cell] * (1.0 - law.damage[cell]) * volume;
-            add_cell_forces(force, local, gradients, symmetric_columns(stress));
+            let hoop = if HOOP { cells.hoop(cell) } else { None };
+            add_cell_forces(force, local, gradients, symmetric_columns(stress), hoop);
         }
     }
 }

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use crate::body::edges::BodyEdges;
 use crate::body::rate::RateCurves;
 use crate::body::{Body, DamageZone, ElementKind, Formulation, Region, Regularisation};
+use crate::cells::cell::Geometry;
 use crate::damage::phase::PhaseLaw;
-use crate::element::regular_edge;
 use crate::error::SolidError;
 
 /// Element sizes in the length of a phase field by default: of one size motion leaves the family of solutions, more costs accuracy.
@@ -62,12 +62,13 @@ impl Threshold {
         known: Option<(&[u32], &dyn Exchange)>,
     ) -> Result<Self, SolidError> {
         let (known, exchange) = known.unzip();
-        let of_edge = |edge| characteristic_length(body, &edges.around(edge), |element| volumes[element as usize]);
+        let geometry = Geometry { body, nodes };
+        let of_edge = |edge| characteristic_length(&geometry, &edges.around(edge), |element| volumes[element as usize]);
         let length: Vec<f64> = match known {
             Some(known) => known.par_iter().map(|&edge| of_edge(edge)).collect(),
             None => (0..edges.len() as u32).into_par_iter().map(of_edge).collect(),
         };
-        let size = size_where_cracks_go(body, zone, edges, volumes);
+        let size = size_where_cracks_go(&geometry, zone, edges, volumes);
         let law = |regularisation: Regularisation| {
             PhaseLaw::of(body, zone, [regularisation.length.unwrap_or(SIZES_OF_LENGTH * size), size])
         };
@@ -193,27 +194,27 @@ impl Lengths {
 /// Characteristic length of an edge [m].
 ///
 /// - `around`: its elements; `volume`: of an element [m³]
-pub(crate) fn characteristic_length(body: &Body, around: &[u32], volume: impl Fn(u32) -> f64) -> f64 {
+pub(crate) fn characteristic_length(geometry: &Geometry, around: &[u32], volume: impl Fn(u32) -> f64) -> f64 {
     // Measured on tension bars of the gallery (aligned, jittered and Delaunay meshes of two sizes) and on bars without lateral
     // contraction, never on other cases: the middle of the range in which all of them dissipate G_f times the area.
-    let factor = match (body.formulation, body.shape) {
+    let factor = match (geometry.body.formulation, geometry.body.shape) {
         (Formulation::Smoothed, ElementKind::T4) => 1.2,
         (Formulation::Smoothed, ElementKind::T3) => 1.124,
         (Formulation::Standard, ElementKind::T4) => 1.2,
         (Formulation::Standard, ElementKind::T3) => 1.28,
     };
-    let sum: f64 = around.iter().map(|&element| regular_edge(body.shape, volume(element) / body.depth())).sum();
+    let sum: f64 = around.iter().map(|&element| geometry.size(element, volume(element))).sum();
     factor * sum / around.len() as f64
 }
 
 /// Mean size of the elements where cracks are expected [m]: of those that may be damaged the small ones, up to
 /// [`ONE_SIZE`] times the size that a tenth of them stays below. Whoever grades a mesh makes elements small where it will crack.
-fn size_where_cracks_go(body: &Body, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
-    let count = body.shape.edge_count();
+fn size_where_cracks_go(geometry: &Geometry, zone: &DamageZone, edges: &BodyEdges, volumes: &[f64]) -> f64 {
+    let count = geometry.body.shape.edge_count();
     let armed = |edge: u32| !matches!(&zone.region, Region::Edges(marked) if !marked[edge as usize]);
     let may_break = |element| edges.of_element(element)[..count].iter().any(|&edge| armed(edge));
     let sizes = (0..).zip(volumes).filter(|(element, _)| may_break(*element));
-    let mut sizes: Vec<f64> = sizes.map(|(_, volume)| regular_edge(body.shape, volume / body.depth())).collect();
+    let mut sizes: Vec<f64> = sizes.map(|(element, &volume)| geometry.size(element, volume)).collect();
     sizes.sort_unstable_by(f64::total_cmp);
     let Some(small) = sizes.get(sizes.len() / 10) else { return 0.0 };
     let taken = &sizes[..sizes.partition_point(|size| *size <= ONE_SIZE * small)];

@@ -86,7 +86,7 @@ fn bound(solid: &Solid, counts: impl Fn(usize, u32) -> bool) -> StableStep {
         let elasticity = &model.elasticity;
         let trace = |element: usize| {
             let (_, gradients) = geometry.element(element);
-            elasticity.trace_sum(&gradients[..corners]) * scale
+            (elasticity.trace_sum(&gradients[..corners]) + elasticity.hoop_trace(geometry.hoop(element))) * scale
         };
         let meant = |&e: &u32| model.alive[e as usize] && counts(body, e) && solid.owns(body, e);
         let meant: Vec<u32> = (0..model.body.elements.len() as u32).filter(meant).collect();
@@ -131,16 +131,18 @@ pub(crate) fn element_frequency(geometry: &Geometry, elasticity: &Elasticity, el
     let corners = geometry.body.shape.node_count();
     let (_, gradients) = geometry.element(element);
     let scale = corners as f64 / geometry.body.elastic.density;
-    (element_eigenvalue(&gradients[..corners], elasticity) * scale).sqrt()
+    (element_eigenvalue(&gradients[..corners], geometry.hoop(element), elasticity) * scale).sqrt()
 }
 
 /// Largest eigenvalue of D Σ b bᵀ, which times n/ρ is the squared frequency of an element with the mass ρV/n per node.
-fn element_eigenvalue(gradients: &[Vec3], elasticity: &Elasticity) -> f64 {
+///
+/// - `hoop`: inverse radius of an element around an axis, else 0 [1/m]
+fn element_eigenvalue(gradients: &[Vec3], hoop: f64, elasticity: &Elasticity) -> f64 {
     let mut sum = Matrix6::zeros();
     for gradient in gradients {
         let (x, y, z) = (gradient.x, gradient.y, gradient.z);
         #[rustfmt::skip]
-        let b = SMatrix::<f64, 6, 3>::new(
+        let mut b = SMatrix::<f64, 6, 3>::new(
             x, 0.0, 0.0,
             0.0, y, 0.0,
             0.0, 0.0, z,
@@ -148,6 +150,9 @@ fn element_eigenvalue(gradients: &[Vec3], elasticity: &Elasticity) -> f64 {
             0.0, z, y,
             z, 0.0, x,
         );
+        if hoop > 0.0 {
+            b[(2, 0)] = hoop / gradients.len() as f64;
+        }
         sum += b * b.transpose();
     }
     // Eigenvalues of D S are those of Lᵀ S L with D = L Lᵀ; volume cancels against the lumped mass.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use crate::cells::cell::Geometry;
 use crate::cells::viscosity::{BodyViscosity, Viscosity, ViscousCells};
-use crate::element::regular_edge;
 use crate::solid::Solid;
 use crate::solid::body_model::BodyModel;
 
@@ -23,7 +22,7 @@ pub fn set_viscosity(solid: &mut Solid, viscosity: Viscosity) {
         model.viscosity = Some(BodyViscosity { constants: viscosity, density, wave_speed, shape_factor });
     }
     for block in &mut solid.blocks {
-        block.viscous = ViscousCells::new(&solid.bodies[block.body].body, &block.cells.volume);
+        block.viscous = ViscousCells::new(&solid.bodies[block.body].body, &block.cells);
     }
 }
 
@@ -53,8 +52,9 @@ fn shape_factor(solid: &Solid, index: usize) -> f64 {
     let of = |element: usize| {
         let (volume, gradients) = geometry.element(element);
         let square: f64 = gradients[..corners].iter().map(|g| g.norm_squared()).sum();
+        let square = square + geometry.hoop(element).powi(2) / corners as f64;
         let frequency = (square * stiffness * corners as f64 / body.elastic.density).sqrt();
-        frequency * regular_edge(body.shape, volume / body.depth()) / wave_speed
+        frequency * geometry.size(element as u32, volume) / wave_speed
     };
     solid.neighbours.largest((0..body.elements.len()).into_par_iter().map(of).reduce(|| 0.0, f64::max))
 }

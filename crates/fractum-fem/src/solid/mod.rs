@@ -272,7 +272,8 @@ impl Solid {
             _ => true,
         };
         may_break.then(|| {
-            characteristic_length(&model.body, &edges.around(edge), |element| self.element_volume(body, element))
+            let geometry = Geometry { body: &model.body, nodes: &self.reference };
+            characteristic_length(&geometry, &edges.around(edge), |element| self.element_volume(body, element))
         })
     }
 
@@ -347,7 +348,12 @@ impl Solid {
         Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0
     }
 
-    /// Whether the solid is plane.
+    /// Whether the solid is turned about the y axis.
+    pub fn is_axisymmetric(&self) -> bool {
+        self.bodies.iter().any(|model| model.body.is_axisymmetric())
+    }
+
+    /// Whether the solid is plane, which it is around an axis too.
     pub fn is_plane(&self) -> bool {
         self.bodies.iter().any(|model| model.body.shape == ElementKind::T3)
     }

@@ -1,6 +1,7 @@
 //! Thicknesses of plane bodies, by the nodes of their edges.
 
 use crate::body::ElementKind;
+use crate::element::Depth;
 use crate::solid::{BodyModel, Solid};
 
 /// Thicknesses of the plane bodies of a solid.
@@ -42,7 +43,12 @@ pub fn thickness_at(solid: &Solid, edge: [u32; 2]) -> f64 {
     solid.thicknesses.at(edge)
 }
 
-/// Thickness of a facet that is an edge in the plane, which repeats its second node [m]; 0 for triangles in space.
-pub fn facet_thickness(solid: &Solid, &[a, b, c]: &[u32; 3]) -> f64 {
-    if b == c { thickness_at(solid, [a, b]) } else { 0.0 }
+/// Depth behind an edge of plane bodies: the thickness there, or a whole turn.
+pub fn depth_at(solid: &Solid, edge: [u32; 2]) -> Depth {
+    if solid.is_axisymmetric() { Depth::Turn } else { Depth::Thickness(thickness_at(solid, edge)) }
+}
+
+/// Depth of a facet that is an edge in the plane, which repeats its second node; none of triangles in space.
+pub fn facet_depth(solid: &Solid, &[a, b, c]: &[u32; 3]) -> Option<Depth> {
+    (b == c).then(|| depth_at(solid, [a, b]))
 }

@@ -93,7 +93,7 @@ impl Stiffness {
         }
         let mut made = Stiffness { rows };
         match plane {
-            None => {}
+            None | Some(Plane::Axisymmetric) => {}
             Some(Plane::Strain) => [4, 5].into_iter().for_each(|axis| made.forget(axis)),
             Some(Plane::Stress) => [2, 4, 5].into_iter().for_each(|axis| made.release(axis)),
         }

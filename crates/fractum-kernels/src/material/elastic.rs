@@ -48,6 +48,8 @@ pub enum Plane {
     Strain,
     /// No stress across the thickness.
     Stress,
+    /// A section through the y axis, about which the body is turned: the strain across is that of the circumference, and the law is that in space.
+    Axisymmetric,
 }
 
 /// Isotropic Hooke's law with the plane-stress variant.

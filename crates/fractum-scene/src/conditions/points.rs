@@ -1,4 +1,4 @@
-use fractum_fem::{Solid, facet_thickness, neighbours};
+use fractum_fem::{Depth, Solid, facet_depth, neighbours};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
@@ -28,9 +28,9 @@ pub(crate) trait Points {
     /// Velocity at the half step [m/s].
     fn velocity(&self, point: usize) -> &Vec3;
 
-    /// Thickness of a facet that is an edge in the plane [m]; 0 in space.
-    fn thickness(&self, _facet: &[u32; 3]) -> f64 {
-        0.0
+    /// Depth of a facet that is an edge in the plane; none in space.
+    fn depth(&self, _facet: &[u32; 3]) -> Option<Depth> {
+        None
     }
 }
 
@@ -80,8 +80,8 @@ impl Points for Solid {
         &self.velocity[point]
     }
 
-    fn thickness(&self, facet: &[u32; 3]) -> f64 {
-        facet_thickness(self, facet)
+    fn depth(&self, facet: &[u32; 3]) -> Option<Depth> {
+        facet_depth(self, facet)
     }
 }
 

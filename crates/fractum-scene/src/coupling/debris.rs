@@ -141,10 +141,13 @@ impl Debris {
         for index in (0..solid.body_count()).rev() {
             let body = solid.body(index);
             let pair = (body.elastic.young_modulus, body.elastic.poisson_ratio);
-            let own = if body.shape == fractum_fem::ElementKind::T3 { body.thickness } else { 0.0 };
             for &node in body.elements.iter().flatten() {
-                (self.elasticity[node as usize], self.body[node as usize]) = (pair, index as u32);
-                self.thickness[node as usize] = own;
+                let i = node as usize;
+                (self.elasticity[i], self.body[i]) = (pair, index as u32);
+                // On an axis the ring about it counts.
+                let place =
+                    solid.reference[i].sup(&Vec3::new(0.5 * self.radius[i], f64::NEG_INFINITY, f64::NEG_INFINITY));
+                self.thickness[i] = body.depth().map_or(0.0, |depth| depth.at(&place));
             }
         }
     }

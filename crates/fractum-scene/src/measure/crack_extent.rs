@@ -1,7 +1,7 @@
 //! How much has separated: length, area and number of cracks, and where they have come to.
 
 use fractum_dem::crack_shape::Axis;
-use fractum_fem::{SeparatedElement, Separation, cracks};
+use fractum_fem::{SeparatedElement, SeparatedFacet, Separation, cracks};
 use fractum_math::{Vec3, numbered_parts};
 
 use crate::interfaces::InterfaceFace;
@@ -82,7 +82,11 @@ fn measure_extent(
         CrackMeasure::Length => {
             let parted =
                 parted.map(|(face, part, area)| part * area / solid.body(face.elements[0].0 as usize).thickness);
-            facets.map(|facet| facet.area / solid.body(facet.body).thickness).sum::<f64>() + parted.sum::<f64>() + 0.0
+            let depth = |facet: &SeparatedFacet| {
+                let body = solid.body(facet.body);
+                body.depth().map_or(body.thickness, |depth| depth.at(&solid.element_middle(facet.body, facet.removed)))
+            };
+            facets.map(|facet| facet.area / depth(facet)).sum::<f64>() + parted.sum::<f64>() + 0.0
         }
         CrackMeasure::Count => {
             let (_, of_solids) = cracks::separate_cracks(solid, &separated_within(separation, inside));

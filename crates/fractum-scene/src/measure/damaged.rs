@@ -31,9 +31,13 @@ impl DamagedPart {
     /// - `threshold`: mean damage over the edges of an element from which on it counts, above 0 up to 1
     /// - `elements`: bodies and their elements that are looked at
     pub fn new(solid: &Solid, measure: DamagedMeasure, threshold: f64, elements: &[(usize, u32)]) -> Self {
-        let depth = |body: usize| if measure == DamagedMeasure::Area { solid.body(body).thickness } else { 1.0 };
-        let sized =
-            |&(body, element): &(usize, u32)| (body, element, solid.element_volume(body, element) / depth(body));
+        let depth = |body: usize, element: u32| match solid.body(body).depth() {
+            Some(depth) if measure == DamagedMeasure::Area => depth.at(&solid.element_middle(body, element)),
+            _ => 1.0,
+        };
+        let sized = |&(body, element): &(usize, u32)| {
+            (body, element, solid.element_volume(body, element) / depth(body, element))
+        };
         let elements: Vec<(usize, u32, f64)> = elements.iter().map(sized).collect();
         let size = elements.iter().fold(0.0, |sum, (_, _, size)| sum + size);
         DamagedPart { measure, threshold, elements, size }

@@ -37,14 +37,7 @@ pub(super) fn add_stress<const B: usize>(matrix: &mut BlockMatrix<B>, pairs: &[u
 
 /// Stress of a cell at the start times its volume [J].
 fn stress_at_start(solid: &Solid, cell: &SecantCell<'_>) -> Mat3 {
-    let h = gradient(cell, &solid.initial_displacement);
-    cell.stress(&h)
-}
-
-/// Gradient of a field in a cell.
-fn gradient(cell: &SecantCell<'_>, field: &[Vec3]) -> Mat3 {
-    let parts = cell.nodes.iter().zip(cell.gradients);
-    parts.map(|(&node, g)| field[node as usize] * Vec3::from(*g).transpose()).sum()
+    cell.stress(&cell.gradient(&solid.initial_displacement))
 }
 
 /// The rigid motions on which the stresses of the start have no force: translations, and rotations about an axis along which
@@ -61,7 +54,7 @@ pub(super) fn without_force(solid: &Solid, motions: Vec<RigidMotion>) -> Vec<Rig
     solid.for_each_cell(&solid.cell_damage(), |cell| {
         let stress = stress_at_start(solid, &cell);
         for (motion, force) in motions.iter().zip(&mut forces) {
-            let h = gradient(&cell, &motion.nodes);
+            let h = cell.gradient(&motion.nodes);
             for (&node, g) in cell.nodes.iter().zip(cell.gradients) {
                 force[node as usize] += h * stress * Vec3::from(*g);
             }

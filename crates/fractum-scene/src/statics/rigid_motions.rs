@@ -2,7 +2,7 @@
 
 use fractum_math::{Vec3, connected};
 
-use super::support_check::{Piece, pieces};
+use super::support_check::{Piece, impossible, pieces};
 use crate::scene::Scene;
 
 /// Velocities in a rigid motion: of nodes, and of particles, displacement and then rotation.
@@ -36,7 +36,8 @@ pub(super) fn rigid_motions(scene: &Scene, bonds: impl Iterator<Item = [u32; 2]>
         let radius = |point: usize| if point < nodes { 0.0 } else { particles.radius[point - nodes] };
         let reach = |&point: &usize| (place(point) - centre).norm() + radius(point);
         let size = members.iter().map(reach).fold(f64::MIN_POSITIVE, f64::max);
-        let mut piece = Piece::free(centre, size, solid.is_plane() && members[0] < nodes);
+        let none = if members[0] < nodes { impossible(solid) } else { &[] };
+        let mut piece = Piece::free(centre, size, none);
         for &point in members {
             let held = match point.checked_sub(nodes) {
                 None => scene.supports.held().get(point).copied().unwrap_or(0),

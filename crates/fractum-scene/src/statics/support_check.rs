@@ -73,23 +73,33 @@ pub(super) struct Piece {
     centre: Vec3,
     size: f64,
     gram: Matrix6<f64>,
-    plane: bool,
+    /// Rigid motions that it has not.
+    none: &'static [usize],
+}
+
+/// The rigid motions that a solid has not: what leaves its plane, and around an axis all but motion along it.
+pub(super) fn impossible(solid: &Solid) -> &'static [usize] {
+    match (solid.is_plane(), solid.is_axisymmetric()) {
+        (_, true) => &[0, 2, 3, 4, 5],
+        (true, _) => &[2, 3, 4],
+        _ => &[],
+    }
 }
 
 impl Piece {
     /// A piece that nothing holds.
     ///
     /// - `size`: distance by which rotations are measured [m], > 0
-    /// - `plane`: whether it stays in its plane
-    pub(super) fn free(centre: Vec3, size: f64, plane: bool) -> Self {
-        Piece { centre, size, gram: Matrix6::zeros(), plane }
+    /// - `none`: rigid motions that it has not, see [`impossible`]
+    pub(super) fn free(centre: Vec3, size: f64, none: &'static [usize]) -> Self {
+        Piece { centre, size, gram: Matrix6::zeros(), none }
     }
 
     fn new(solid: &Solid, nodes: &[u32], held: &[u8]) -> Self {
         let centre = nodes.iter().map(|&n| solid.reference[n as usize]).sum::<Vec3>() / nodes.len() as f64;
         let spread = |&n: &u32| (solid.reference[n as usize] - centre).norm();
         let size = nodes.iter().map(spread).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
-        let mut piece = Piece::free(centre, size, solid.is_plane());
+        let mut piece = Piece::free(centre, size, impossible(solid));
         for &node in nodes {
             let bits = held.get(node as usize).copied().unwrap_or(0);
             let axes = (0..3).filter(|axis| bits & (1 << axis) != 0);
@@ -124,13 +134,10 @@ impl Piece {
     /// A rigid motion that nothing prevents: translation, and rotation times the size of the piece.
     fn free_motion(&self) -> Option<Vector6<f64>> {
         let mut gram = self.gram;
-        if self.plane {
-            // What leaves the plane is no motion of a plane body.
-            for mode in [2, 3, 4] {
-                gram.row_mut(mode).fill(0.0);
-                gram.column_mut(mode).fill(0.0);
-                gram[(mode, mode)] = 1.0;
-            }
+        for &mode in self.none {
+            gram.row_mut(mode).fill(0.0);
+            gram.column_mut(mode).fill(0.0);
+            gram[(mode, mode)] = 1.0;
         }
         let eigen = gram.symmetric_eigen();
         let free = (0..6).find(|&m| eigen.eigenvalues[m] < FREE)?;

@@ -8,7 +8,7 @@ use fractum_case::model::{
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
 use fractum_fem::{
-    DamageLaw, EXCESS_OF_PEAK, ElementKind, Formulation, Kinematics, LengthReport, Plane, crack_scale, motion,
+    DamageLaw, Depth, EXCESS_OF_PEAK, ElementKind, Formulation, Kinematics, LengthReport, Plane, crack_scale, motion,
     neighbours,
 };
 use fractum_math::elementary::cbrt;
@@ -207,6 +207,7 @@ impl Plan {
         };
         let shape = match (body.shape, body.plane) {
             (ElementKind::T4, _) => "tetrahedra".to_owned(),
+            (ElementKind::T3, Plane::Axisymmetric) => "axisymmetric triangles, turned about the y axis".to_owned(),
             (ElementKind::T3, plane) => {
                 let plane = if plane == Plane::Stress { "plane stress" } else { "plane strain" };
                 format!("triangles in {plane}, {} thick", quantity(body.thickness, "m"))
@@ -287,6 +288,12 @@ fn mean_size(scene: &Scene, body: usize, volume: f64) -> f64 {
     let each = volume / neighbours::element_count(&scene.solid, body) as f64;
     match model.shape {
         ElementKind::T4 => cbrt(6.0 * 2f64.sqrt() * each),
+        ElementKind::T3 if model.is_axisymmetric() => {
+            let volumes = (0..).zip(scene.solid.element_volumes(body));
+            let depth = |element| Depth::Turn.at(&scene.solid.element_middle(body, element));
+            let area: f64 = volumes.map(|(element, volume)| volume / depth(element)).sum();
+            (4.0 * area / (model.elements.len() as f64 * 3f64.sqrt())).sqrt()
+        }
         ElementKind::T3 => (4.0 * each / model.thickness / 3f64.sqrt()).sqrt(),
     }
 }

@@ -1,6 +1,6 @@
 use std::fmt;
 
-use fractum_fem::facet_area;
+use fractum_fem::{Depth, facet_area};
 use fractum_math::Vec3;
 
 use crate::conditions::Points;
@@ -24,8 +24,8 @@ impl Pressure {
     }
 }
 
-/// A third of p times the area vector of a facet on each of its corners, half on each end of a plane edge; the area is at most
-/// twice that without load.
+/// A third of p times the area vector of a facet on each of its corners, half on each end of a plane edge, around an axis their shares of the area;
+/// this is at most twice that without load.
 ///
 /// - `pressure`: at the reference centre of the facet [Pa]
 pub(super) fn push_facet(
@@ -34,13 +34,18 @@ pub(super) fn push_facet(
     pressure: impl Fn(&Vec3) -> f64,
     forces: &mut Vec<(u32, Vec3)>,
 ) {
-    let thickness = points.thickness(facet);
+    let depth = points.depth(facet);
     let place = facet.map(|n| points.position(n as usize));
     let [a, b, c] = facet.map(|n| points.reference(n as usize));
-    let (centre, corners) = if thickness > 0.0 { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
-    let thickness = (thickness > 0.0).then_some(thickness);
-    let area = facet_area(place, thickness);
-    let share = share_of_torn(&area, &facet_area([*a, *b, *c], thickness));
+    let (centre, corners) = if depth.is_some() { ((a + b) * 0.5, 2) } else { ((a + b + c) / 3.0, 3) };
+    let area = facet_area(place, depth);
+    let share = share_of_torn(&area, &facet_area([*a, *b, *c], depth));
+    if depth == Some(Depth::Turn) {
+        let whole = area * (-pressure(&centre) * share);
+        let shares = Depth::Turn.shares([&place[0], &place[1]]);
+        forces.extend(facet.iter().zip(shares).map(|(&n, share)| (n, whole * share)));
+        return;
+    }
     let force = area * (-pressure(&centre) / corners as f64 * share);
     forces.extend(facet[..corners].iter().map(|&n| (n, force)));
 }
@@ -56,7 +61,7 @@ mod tests {
     use super::*;
 
     /// Three nodes of a triangle in the xy-plane that has been stretched from the origin.
-    struct Stretched(f64, [Vec3; 3], f64);
+    struct Stretched(f64, [Vec3; 3], Option<Depth>);
 
     impl Points for Stretched {
         fn reference(&self, point: usize) -> &Vec3 {
@@ -79,25 +84,28 @@ mod tests {
             &self.1[0]
         }
 
-        fn thickness(&self, _: &[u32; 3]) -> f64 {
+        fn depth(&self, _: &[u32; 3]) -> Option<Depth> {
             self.2
         }
     }
 
     #[test]
     fn the_force_grows_with_the_facet_until_it_is_torn_open() {
-        let push = |stretch: f64, facet, thickness| {
+        let push = |stretch: f64, facet, depth| {
             let nodes = [Vec3::zeros(), Vec3::x() * 2.0, Vec3::y()];
             let mut forces = Vec::new();
-            push_facet(&Stretched(stretch, nodes, thickness), &facet, |_| 6.0, &mut forces);
+            push_facet(&Stretched(stretch, nodes, depth), &facet, |_| 6.0, &mut forces);
             forces.iter().map(|(_, force)| force).sum::<Vec3>()
         };
-        let in_space = [1.0, 1.2, 10.0].map(|stretch| push(stretch, [0, 1, 2], 0.0));
+        let in_space = [1.0, 1.2, 10.0].map(|stretch| push(stretch, [0, 1, 2], None));
         assert!((in_space[0] - Vec3::z() * -6.0).norm() < 1e-12);
         assert!((in_space[1] - Vec3::z() * -6.0 * 1.44).norm() < 1e-12);
         assert!((in_space[2] - Vec3::z() * -12.0).norm() < 1e-12);
-        let in_plane = [1.5, 30.0].map(|stretch| push(stretch, [0, 1, 1], 0.1));
+        let in_plane = [1.5, 30.0].map(|stretch| push(stretch, [0, 1, 1], Some(Depth::Thickness(0.1))));
         assert!((in_plane[0] - Vec3::y() * 1.2 * 1.5).norm() < 1e-12);
         assert!((in_plane[1] - Vec3::y() * 2.4).norm() < 1e-12);
+        // A disc of 2 m in radius, on the side of its y axis.
+        let disc = push(1.0, [0, 1, 1], Some(Depth::Turn));
+        assert!((disc - Vec3::y() * 6.0 * 4.0 * std::f64::consts::PI).norm() < 1e-12);
     }
 }
