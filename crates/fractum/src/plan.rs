@@ -243,11 +243,11 @@ impl Plan {
         }
         let depth = |line: [u32; 2]| depth_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
         if scene.solid.is_axisymmetric() {
-            let axis = scene.solid.reference.iter().filter(|place| place.x <= 0.0).count();
-            self.add(
-                "axis",
-                format!("y: forces, areas and masses are those of the whole turn; {axis} nodes on it, held along x"),
-            );
+            let held = match scene.solid.reference.iter().filter(|place| place.x <= 0.0).count() {
+                0 => String::new(),
+                nodes => format!("; the {nodes} nodes on it are held along x"),
+            };
+            self.add("axis", format!("y, x is the radius: forces, areas and masses are those of the whole turn{held}"));
         }
         let delay = |load: &Load| match &load.kind {
             LoadKind::Pressure { pressure, .. } => pressure.value.delay(),

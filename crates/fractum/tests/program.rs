@@ -3,6 +3,7 @@
 mod common;
 
 mod accuracy;
+mod axisymmetric;
 mod bonded;
 mod book;
 mod breaking;

@@ -98,7 +98,7 @@ pub(crate) fn elasticity(draw: &mut Draw, plane: Option<Plane>) -> Held {
     let words = format!("{plane:?}, nu {nu:.3}");
     // Strain of a pull along x, and the modulus that is seen.
     let (strain, modulus) = match plane {
-        None => ([1.0, -nu, -nu], young),
+        None | Some(Plane::Axisymmetric) => ([1.0, -nu, -nu], young),
         Some(Plane::Stress) => ([1.0, -nu, 0.0], young),
         Some(Plane::Strain) => ([1.0, -nu / (1.0 - nu), 0.0], young / (1.0 - nu * nu)),
     };
@@ -108,7 +108,7 @@ pub(crate) fn elasticity(draw: &mut Draw, plane: Option<Plane>) -> Held {
     hold((xx / modulus - 1.0).abs() < rounding, || format!("{words}: {xx} of {modulus}"))?;
     hold(yy.abs() < rounding * modulus, || format!("{words}: {yy} across"))?;
     let thick = match plane {
-        None | Some(Plane::Stress) => 0.0,
+        None | Some(Plane::Stress | Plane::Axisymmetric) => 0.0,
         Some(Plane::Strain) => nu * xx,
     };
     hold((zz - thick).abs() < rounding * modulus, || format!("{words}: {zz} through the thickness, {thick}"))?;
