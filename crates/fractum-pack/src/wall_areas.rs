@@ -191,12 +191,14 @@ mod tests {
     fn sums(domain: Domain, seed: u64) -> (Vec<[Vec3; 2]>, f64, f64) {
         let packing = pack(&PackSpec::new(domain, 400, seed)).unwrap();
         let mut walls = Vec::new();
-        let mut inward = 0.0f64;
+        let mut inward = f64::NEG_INFINITY;
         for (wall, (_, set)) in packing.walls.iter().enumerate() {
             let areas = packing.domain.wall_areas(wall, set, &packing.position, &packing.radius);
             let centre = packing.position.iter().sum::<Vec3>() / packing.len() as f64;
-            for (&i, [area, _]) in set.iter().zip(&areas) {
-                inward = inward.max(-(packing.position[i as usize] - centre).dot(area) / area.norm().max(1e-300));
+            // A particle behind others shows nothing.
+            let shown = set.iter().zip(&areas).filter(|(_, [area, _])| area.norm() > 0.0);
+            for (&i, [area, _]) in shown {
+                inward = inward.max(-(packing.position[i as usize] - centre).dot(area) / area.norm());
             }
             walls.push([0, 1].map(|k| areas.iter().map(|own| own[k]).sum::<Vec3>()));
         }

@@ -46,7 +46,7 @@ fn each_mistake_about_sizes_has_one_clear_message() {
         (
             "passing = [[0.1, 0], [0.2, \"40 %\"], [0.4, 1]]",
             "law = \"uniform\", smallest = 0.2, largest = 0.1",
-            "12:51: bodies[0].sizes.largest is not above smallest; expected a diameter above smallest; without sizes all particles have one radius",
+            "12:54: bodies[0].sizes.largest is not above smallest; expected a diameter above smallest; without sizes all particles have one radius",
         ),
         (
             "[0.1, 0]",
