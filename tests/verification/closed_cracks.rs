@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use fractum_fem::{
-    Body, Criterion, CriterionKind, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Plane, Region,
-    Solid, fields, rubbed_energy,
+    Body, Criterion, CriterionKind, DamageLaw, Elastic, ElementKind, Kinematics, LocalDamping, Plane, Region, Solid,
+    fields, rubbed_energy,
 };
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};

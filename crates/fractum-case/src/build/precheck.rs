@@ -10,8 +10,8 @@ use fractum_scene::{Domain, Scene};
 use super::{Context, interfaces, liquid, rate};
 use crate::measure::ContactForce;
 use crate::model::{
-    Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape, Selection,
-    SolverKind, WHOLE_MESH,
+    Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape,
+    Selection, SolverKind, WHOLE_MESH,
 };
 use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
 
