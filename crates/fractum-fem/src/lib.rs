@@ -41,7 +41,7 @@ mod state;
 
 pub use body::edges::BodyEdges;
 pub use body::rate::RateCurves;
-pub use body::{Body, DamageZone, ElementKind, Formulation, Kinematics, Region, Regularisation};
+pub use body::{Body, DamageZone, Depth, ElementKind, Formulation, Kinematics, Region, Regularisation, facet_area};
 pub use cells::viscosity::Viscosity;
 pub use cracks::{
     CrackCell, CrackEdge, CrackFacet, CrackMouth, CrackNetwork, CrackNetworkState, CrackPlane, CrackSide, CrackSurface,
@@ -53,7 +53,7 @@ pub use divided::{
     BodyShare, ConnectedPieces, DividedBoundary, KnownAround, ReadBody, Replication, SharedNodes, all_elements, deal,
     divided_boundary,
 };
-pub use element::{CUT_MODES, Depth, InvertedElement, facet_area};
+pub use element::{CUT_MODES, InvertedElement};
 pub use error::SolidError;
 pub use fields::{Extreme, Extremes};
 pub use fractum_kernels::damage::{EdgeDamage, EdgeRate, Seen, rate_factor};
@@ -65,5 +65,5 @@ pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
 pub use solid::subcycling::rubbed_energy;
-pub use solid::thickness::{depth_at, facet_depth, thickness_at};
+pub use solid::thickness::{depth_at, facet_depth, is_axisymmetric, thickness_at};
 pub use state::{BodyState, SolidState, rate_report};

@@ -22,7 +22,7 @@ use fractum_case::build::{BuiltScene, TieReport};
 use fractum_case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_fem::{Depth, ElementKind, Kinematics, depth_at, facet_area};
+use fractum_fem::{Depth, ElementKind, Kinematics, depth_at, facet_area, is_axisymmetric};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
@@ -242,7 +242,7 @@ impl Plan {
             self.add("support", format!("{}: {what}", support.on.label()));
         }
         let depth = |line: [u32; 2]| depth_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
-        if scene.solid.is_axisymmetric() {
+        if is_axisymmetric(&scene.solid) {
             let held = match scene.solid.reference.iter().filter(|place| place.x <= 0.0).count() {
                 0 => String::new(),
                 nodes => format!("; the {nodes} nodes on it are held along x"),

@@ -132,7 +132,7 @@ fn check_loads(context: &mut Context<'_>) {
             LoadKind::Gravity { acceleration } => {
                 refuse(acceleration, &[0, 2], ": it is not along the axis", "gravity along y");
             }
-            LoadKind::Pressure { .. } => {}
+            _ => {}
         }
     }
 }

@@ -13,12 +13,15 @@ use super::conditions::{LoadedPoints, motion_of};
 use crate::model::{BodyKind, Material, Selection, TimeStep};
 use crate::{Diagnostic, Field, Spanned};
 
+/// A set of particles, ascending, with its name.
+pub(super) type NamedSet = (String, Vec<u32>);
+
 /// The sets of particles of a bonded body, in the numbering of the scene.
 pub(super) struct ParticleSets {
     /// Index into `Case::bodies`.
     body: usize,
     /// Names and particles, ascending; the first is the whole body.
-    sets: Vec<(String, Vec<u32>)>,
+    sets: Vec<NamedSet>,
     /// The shape that it was packed into, with the number of its walls: the sets after the first.
     walls: Option<(Domain, usize)>,
 }
@@ -90,7 +93,7 @@ impl Context<'_> {
     }
 
     /// The shape that a body was packed into, and the particles at each of its walls.
-    pub(super) fn walls_of(&self, body: usize) -> Option<(Domain, Vec<(String, Vec<u32>)>)> {
+    pub(super) fn walls_of(&self, body: usize) -> Option<(Domain, Vec<NamedSet>)> {
         let own = self.particle_sets.iter().find(|sets| sets.body == body)?;
         let (domain, count) = own.walls.as_ref()?;
         Some((domain.clone(), own.sets[1..=*count].to_vec()))

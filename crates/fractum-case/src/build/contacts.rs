@@ -303,7 +303,7 @@ fn scene_servo(context: &mut Context<'_>, servo: &model::Servo, bodies: &[RigidB
                 bodies.iter().position(|body| body.name == name.value && of(body))
             };
             let mut planes = [0; 4];
-            for (place, name) in planes.iter_mut().zip(names) {
+            for (place, name) in planes.iter_mut().zip(names.iter()) {
                 let Some(found) = plane(name) else {
                     let found = format!("= \"{}\"", name.value);
                     context.error(&name.place, found, "a rigid body with shape = \"plane\"");

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use fractum_fem::{Elastic, ElementKind, Solid};
+use fractum_fem::{Elastic, ElementKind, Solid, is_axisymmetric};
 use fractum_math::{Mat3, Vec3, connected};
 use fractum_scene::{SupportedFacet, SurfaceSupports};
 
@@ -48,7 +48,7 @@ impl Context<'_> {
                         (&mut elastic, SupportedFacet::along_and_across(normal, [along, tangential]))
                     }
                 };
-                if solid.is_axisymmetric() {
+                if is_axisymmetric(solid) {
                     let of_node = |(node, area)| SupportedFacet { nodes: [node; 3], area, answer };
                     supports.extend(surface.areas(&[*facet]).into_iter().map(of_node));
                     continue;

@@ -70,7 +70,7 @@ pub enum ServoArea {
     /// This one [m²], > 0.
     Given(f64),
     /// That between two pairs of opposite rigid planes.
-    Between([Spanned<String>; 4]),
+    Between(Box<[Spanned<String>; 4]>),
 }
 
 impl Servo {

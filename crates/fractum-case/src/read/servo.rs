@@ -75,7 +75,7 @@ fn force(table: &Table<'_>, shape: Option<&RigidShape>, along: Option<(usize, f6
                 table.reader.note(note.expected("four rigid planes, each before the one opposite to it"));
                 return None;
             };
-            ServoArea::Between(planes)
+            ServoArea::Between(Box::new(planes))
         }
         (None, _) => {
             let face = shape.zip(along).and_then(|(shape, (axis, _))| face(shape, axis));

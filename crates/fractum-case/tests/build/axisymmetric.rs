@@ -5,7 +5,6 @@ use std::path::Path;
 
 use fractum_case::build::build_scene;
 use fractum_case::parse_case;
-use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_mesh::generate::structured_rectangle;
 use fractum_scene::ProbedScene;

@@ -1,3 +1,4 @@
+pub(crate) mod depth;
 pub(crate) mod edges;
 pub(crate) mod elasticity;
 pub(crate) mod rate;
@@ -9,8 +10,8 @@ use fractum_kernels::material::{Bedding, CriterionKind, DamageLaw, Elastic, Hook
 use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
+pub use self::depth::{Depth, facet_area};
 use self::rate::RateCurves;
-use crate::element::Depth;
 
 /// Kind of all elements of a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

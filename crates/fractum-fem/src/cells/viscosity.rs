@@ -6,9 +6,9 @@ use fractum_math::Sym3;
 use serde::{Deserialize, Serialize};
 
 use crate::body::elasticity::Elasticity;
-use crate::body::{Body, ElementKind, Formulation};
+use crate::body::{Body, Depth, ElementKind, Formulation};
 use crate::cells::block::Cells;
-use crate::element::{Depth, regular_edge};
+use crate::element::regular_edge;
 
 /// Viscous stress: β D ε̇, and a bulk viscosity for shocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]

@@ -10,7 +10,8 @@ use fractum_mesh::topology::{TETRAHEDRON_FACETS, TRIANGLE_SIDES};
 use serde::{Deserialize, Serialize};
 
 use crate::body::ElementKind;
-use crate::element::{facet_area, measure_and_gradients, regular_edge};
+use crate::body::facet_area;
+use crate::element::{measure_and_gradients, regular_edge};
 use crate::solid::Solid;
 use crate::solid::thickness::facet_depth;
 

@@ -5,8 +5,7 @@
 
 use fractum_math::{Ragged, Vec3};
 
-use crate::body::ElementKind;
-use crate::element::facet_area;
+use crate::body::{ElementKind, facet_area};
 use crate::solid::{BodyModel, Solid};
 
 /// Sides of a tetrahedron as its neighbours see them, counter-clockwise from inside it: nodes, the opposite node, and an

@@ -6,8 +6,8 @@
 
 use fractum_math::{Vec3, numbered_parts};
 
+use crate::body::facet_area;
 use crate::cracks::crack_surface::{CrackFacet, CrackSurface};
-use crate::element::facet_area;
 use crate::solid::Solid;
 
 /// Times the mean of the normals goes on to the next neighbours: a reach of about three facets, within which a mesh is

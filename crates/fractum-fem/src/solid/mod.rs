@@ -348,11 +348,6 @@ impl Solid {
         Geometry { body: &self.bodies[body].body, nodes: &self.reference }.element(element as usize).0
     }
 
-    /// Whether the solid is turned about the y axis.
-    pub fn is_axisymmetric(&self) -> bool {
-        self.bodies.iter().any(|model| model.body.is_axisymmetric())
-    }
-
     /// Whether the solid is plane, which it is around an axis too.
     pub fn is_plane(&self) -> bool {
         self.bodies.iter().any(|model| model.body.shape == ElementKind::T3)

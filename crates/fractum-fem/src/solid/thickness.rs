@@ -1,7 +1,6 @@
 //! Thicknesses of plane bodies, by the nodes of their edges.
 
-use crate::body::ElementKind;
-use crate::element::Depth;
+use crate::body::{Depth, ElementKind};
 use crate::solid::{BodyModel, Solid};
 
 /// Thicknesses of the plane bodies of a solid.
@@ -43,9 +42,14 @@ pub fn thickness_at(solid: &Solid, edge: [u32; 2]) -> f64 {
     solid.thicknesses.at(edge)
 }
 
+/// Whether the solid is turned about the y axis.
+pub fn is_axisymmetric(solid: &Solid) -> bool {
+    solid.bodies.iter().any(|model| model.body.is_axisymmetric())
+}
+
 /// Depth behind an edge of plane bodies: the thickness there, or a whole turn.
 pub fn depth_at(solid: &Solid, edge: [u32; 2]) -> Depth {
-    if solid.is_axisymmetric() { Depth::Turn } else { Depth::Thickness(thickness_at(solid, edge)) }
+    if is_axisymmetric(solid) { Depth::Turn } else { Depth::Thickness(thickness_at(solid, edge)) }
 }
 
 /// Depth of a facet that is an edge in the plane, which repeats its second node; none of triangles in space.

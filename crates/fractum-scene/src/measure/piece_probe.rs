@@ -1,6 +1,6 @@
 //! Facets of a group as they are at present, and fragments: area, enclosed volume, the piece that holds some nodes, sizes.
 
-use fractum_fem::{Solid, cracks, thickness_at};
+use fractum_fem::{Solid, cracks, is_axisymmetric, thickness_at};
 use fractum_math::Vec3;
 use fractum_math::elementary::cbrt;
 
@@ -110,7 +110,7 @@ pub fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
 
 /// Diameter of the sphere of a fragment's volume; where solids are plane, of the circle of its area [m].
 pub fn fragment_size(solid: &Solid, fragment: &Fragment) -> f64 {
-    let plane = fragment.nodes.first().filter(|_| solid.is_plane() && !solid.is_axisymmetric());
+    let plane = fragment.nodes.first().filter(|_| solid.is_plane() && !is_axisymmetric(solid));
     equivalent_diameter(fragment.volume, plane.map(|&node| thickness_at(solid, [node; 2])))
 }
 

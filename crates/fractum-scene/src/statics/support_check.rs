@@ -1,6 +1,6 @@
 //! Rigid motions that nothing prevents.
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, is_axisymmetric};
 use fractum_math::Vec3;
 use nalgebra::{Matrix6, Vector6};
 
@@ -79,7 +79,7 @@ pub(super) struct Piece {
 
 /// The rigid motions that a solid has not: what leaves its plane, and around an axis all but motion along it.
 pub(super) fn impossible(solid: &Solid) -> &'static [usize] {
-    match (solid.is_plane(), solid.is_axisymmetric()) {
+    match (solid.is_plane(), is_axisymmetric(solid)) {
         (_, true) => &[0, 2, 3, 4, 5],
         (true, _) => &[2, 3, 4],
         _ => &[],
