@@ -64,6 +64,6 @@ pub use fractum_kernels::material::{
 pub use motion::{LocalDamping, Prescribe, StableStep, WholeStep};
 pub use secant::{CellDamage, DamagePoint, NotSecant, SecantCell};
 pub use solid::Solid;
+pub use solid::depths::{Depths, depths_of, facet_depth, is_axisymmetric, thickness_at};
 pub use solid::subcycling::rubbed_energy;
-pub use solid::thickness::{depth_at, facet_depth, is_axisymmetric, thickness_at};
 pub use state::{BodyState, SolidState, rate_report};

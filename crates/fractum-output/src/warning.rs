@@ -145,6 +145,10 @@ codes! {
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.
     DeepOverlap = "deep-overlap",
+    /// A bonded body at rest that does not bear its loads any more.
+    GaveWay = "gave-way",
+    /// A rigid body that does not press with the force that is asked of its servo.
+    Servo = "servo",
     /// A body that came apart into single nodes.
     SingleNodes = "single-nodes",
     /// Solids that do not hang together, whose vibrations are those of their pieces.

@@ -14,6 +14,8 @@ pub struct Grading {
     passing: Vec<[f64; 2]>,
     /// Share of the number of particles below each of these diameters.
     number: Vec<f64>,
+    /// Mean of the cube of the diameter over the particles [m³].
+    mean_cube: f64,
 }
 
 impl Grading {
@@ -32,7 +34,8 @@ impl Grading {
         }
         let all = number[number.len() - 1];
         number.iter_mut().for_each(|share| *share /= all);
-        Grading { passing, number }
+        // All mass over all particles, both over the same mass.
+        Grading { passing, number, mean_cube: 1.0 / all }
     }
 
     /// As many particles of every diameter between two [m].
@@ -77,15 +80,7 @@ impl Grading {
 
     /// Mean volume of a particle over π/6 [m³].
     pub fn mean_cube(&self) -> f64 {
-        // All mass over all particles, both over the same mass.
-        let pairs = self.passing.windows(2);
-        let count: f64 = pairs
-            .map(|pair| {
-                let ([a, low], [b, high]) = (pair[0], pair[1]);
-                (high - low) * (a + b) / (2.0 * a * a * b * b)
-            })
-            .sum();
-        1.0 / count
+        self.mean_cube
     }
 
     /// Diameter below which this share of the mass lies [m].

@@ -107,28 +107,10 @@ fn depth_in(region: &Region) -> impl Fn(&Vec3) -> f64 {
 }
 
 fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -> (Vec<Vec3>, Vec<f64>) {
-    match *region {
-        Region::Box { point, size } => {
-            let upper = point + size;
-            let depth = |x: &Vec3| (x - point).min().min((upper - x).min());
-            // Cells touch the walls exactly; rounding must not push them out.
-            cloud(&point, &upper, |x| depth(x) * (1.0 + 1e-12) + 1e-12 * radius, radius, dispersion, most, seed)
-        }
-        Region::Cylinder { point, axis, length, radius: wide } => {
-            let end = point + axis * length;
-            let reach = axis.map(|a| wide * (1.0 - a * a).max(0.0).sqrt());
-            let depth = |x: &Vec3| {
-                let along = (x - point).dot(&axis);
-                along.min(length - along).min(wide - (x - point - axis * along).norm())
-            };
-            cloud(&(point.inf(&end) - reach), &(point.sup(&end) + reach), depth, radius, dispersion, most, seed)
-        }
-        Region::Sphere { point, radius: wide } => {
-            let depth = |x: &Vec3| wide - (x - point).norm();
-            let reach = Vec3::repeat(wide);
-            cloud(&(point - reach), &(point + reach), depth, radius, dispersion, most, seed)
-        }
-    }
+    let ((lower, upper), depth) = (bounds(region), depth_in(region));
+    // Cells touch the walls of a box exactly; rounding must not push them out.
+    let slack = if matches!(region, Region::Box { .. }) { 1e-12 } else { 0.0 };
+    cloud(&lower, &upper, |x| depth(x) * (1.0 + slack) + slack * radius, radius, dispersion, most, seed)
 }
 
 /// Rows of x, y, z and radius, separated by commas, semicolons or blanks; a first row of names and `#` comments are

@@ -22,7 +22,7 @@ use fractum_case::build::{BuiltScene, TieReport};
 use fractum_case::model::{
     Body, BodyKind, Case, GroupUse, Load, LoadKind, MeshSource, Selection, SolverKind, SurfaceSupport,
 };
-use fractum_fem::{Depth, ElementKind, Kinematics, depth_at, facet_area, is_axisymmetric};
+use fractum_fem::{Depth, ElementKind, Kinematics, depths_of, facet_area, is_axisymmetric};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::{instant_text, percent, quantity};
@@ -241,7 +241,9 @@ impl Plan {
             };
             self.add("support", format!("{}: {what}", support.on.label()));
         }
-        let depth = |line: [u32; 2]| depth_at(&scene.solid, line.map(|node| built.scene_node[node as usize]));
+        let depths = depths_of(&scene.solid);
+        let depth =
+            depths.map(|depths| move |line: [u32; 2]| depths.at(&line.map(|node| built.scene_node[node as usize])));
         if is_axisymmetric(&scene.solid) {
             let held = match scene.solid.reference.iter().filter(|place| place.x <= 0.0).count() {
                 0 => String::new(),
@@ -278,7 +280,7 @@ impl Plan {
                 Some((on, GroupUse::Facets)) if case.particle_group(on.group_name()).is_some() => {
                     format!("{}, by the part of the walls that each particle shows", on.label())
                 }
-                Some((on, GroupUse::Facets)) => facets_of(mesh, on, scene.solid.is_plane().then_some(&depth)),
+                Some((on, GroupUse::Facets)) => facets_of(mesh, on, depth.as_ref()),
                 Some((on, _)) => on.label().to_owned(),
                 None => "everything".to_owned(),
             };

@@ -379,6 +379,26 @@ fn a_force_on_elements_is_shared_by_their_volume() {
 }
 
 #[test]
+fn a_force_on_elements_around_an_axis_is_shared_by_the_volume_of_their_rings() {
+    let mut mesh = structured_rectangle([6, 24], [0.2, 0.4], None);
+    mesh.nodes.iter_mut().for_each(|node| node.x = 0.2 * (node.x / 0.2).powi(2));
+    let case = PLATES.split("[[bodies]]").next().unwrap().replace("poisson_ratio = 0.2", "poisson_ratio = 0");
+    let rest = "[[bodies]]\nname = \"rod\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stone\"\nplane = \"axisymmetric\"\n\
+                [[supports]]\ngroup = \"y-\"\nfix = \"y\"\n[[loads]]\ngroup = \"body\"\nforce = { y = \"60 kN\" }\n\
+                [solver]\nkind = \"static\"\nend = \"1 s\"\n\
+                [[probes]]\nname = \"axis\"\ndisplacement = { group = \"y+\", where = \"x < 1 mm\", along = \"y\" }\n\
+                [[probes]]\nname = \"rim\"\ndisplacement = { group = \"y+\", where = \"x > 19 cm\", along = \"y\" }\n";
+    let place = Workplace::with_mesh(&format!("{case}{rest}"), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let summary = crate::common::run(&place, "out", "1");
+    // A rod under its weight: u = F L/(2 E A).
+    let expected = 60e3 * 0.4 / (2.0 * 30e9 * std::f64::consts::PI * 0.2 * 0.2);
+    for name in ["axis", "rim"] {
+        let found = summary["probes"][name]["final"].as_f64().unwrap();
+        assert!((found / expected - 1.0).abs() < 0.01, "{name}: {found}, expected {expected}");
+    }
+}
+
+#[test]
 fn a_name_that_means_a_body_and_a_group_of_the_mesh_is_refused() {
     let probe = "[[probes]]\nname = \"sunk\"\ndisplacement = { group = \"y+\", along = \"y\" }\n[solver]";
     let tool = cases()["tool"].replace("[solver]", probe);

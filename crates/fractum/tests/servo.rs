@@ -157,3 +157,13 @@ displacement = { group = "plate", along = "-x" }
     assert!((value("way") / shortening - 1.0).abs() < 0.05, "{} of {shortening}", value("way"));
     assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", one["energy"]);
 }
+
+#[test]
+fn a_servo_that_finds_nothing_to_press_is_told() {
+    let place = Workplace::new(&oedometer("\"5 kPa\"", "1").replace("\"14 mm\"]\nnormal", "\"44 mm\"]\nnormal"));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet", "--set", "solver.end=5 ms"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    for words in ["[servo]", "\"lid\"", "presses with 0 N at the end, and 720 mN are asked for", "servo.speed"] {
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}

@@ -102,3 +102,30 @@ fn loads_that_a_bonded_body_cannot_have_are_told() {
     );
     assert!(text.contains("none of its particles lies at a wall"), "{text}");
 }
+
+/// Beyond its strength a body under forces has no equilibrium: the run ends, and its last state is that of small displacements.
+#[test]
+fn a_body_that_gives_way_under_its_loads_is_told() {
+    let bar = CYLINDER
+        .replace(
+            "[[bodies]]",
+            "[materials.rock.fracture]\ntensile_strength = \"10 MPa\"\ncriterion = \"principal\"\n[[bodies]]",
+        )
+        .replace("particles = 1500", "particles = 800");
+    let loads = "[[supports]]\ngroup = \"core.x-\"\nfix = \"xyz\"\n\
+                 [[loads]]\ngroup = \"core.x+\"\nforce = { x = \"9 kN*t/1 s\" }\n\
+                 [[probes]]\nname = \"way\"\ndisplacement = { group = \"core.x+\", along = \"x\" }\n";
+    let place = Workplace::new(&bar.replace("LOADS", loads).replace("SOLVER", AT_REST));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(
+        ended.stderr.contains("gave way under its loads at") && ended.stderr.contains("[gave-way]"),
+        "{}",
+        ended.stderr
+    );
+    let summary = crate::common::summary(&place, "out");
+    // Strength times length over Young's modulus is 20 um.
+    let way = summary["probes"]["way"]["final"].as_f64().unwrap();
+    assert!((1e-5..4e-4).contains(&way), "{way}");
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", summary["energy"]);
+}

@@ -31,8 +31,8 @@ pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
         }
     }
     let particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
-    if context.case.bodies.iter().any(particles) {
-        return; // what rigid bodies are for
+    if context.case.bodies.iter().any(particles) || part.body.is_axisymmetric() {
+        return; // particles are what rigid bodies are for; around an axis these must be round
     }
     for body in &context.case.bodies {
         let BodyKind::Rigid(rigid) = &body.kind else { continue };

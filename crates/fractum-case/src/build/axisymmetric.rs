@@ -8,7 +8,7 @@ use fractum_scene::{Motion, Support};
 use super::Context;
 use super::bodies::{Numbering, Part};
 use super::conditions::motion_of;
-use crate::model::{Body, BodyKind, Components, LoadKind, ProbeKind, RigidBody, RigidShape};
+use crate::model::{Body, BodyKind, LoadKind, ProbeKind, RigidBody, RigidShape, SolverKind};
 use crate::{Place, Spanned};
 
 /// Distance from the axis over the size of the solids up to which a node lies on it: what is left of a mesh file.
@@ -91,6 +91,11 @@ fn check_tables(context: &mut Context<'_>) {
         let Some(place) = place else { continue };
         context.error(&place, format!(": {what} beside axisymmetric solids"), "a case in the plane or in space for it");
     }
+    if case.solver.kind == SolverKind::Modes {
+        let found =
+            ".kind = \"modes\": vibrations that bend or twist an axisymmetric solid are not seen in its section";
+        context.error(&case.solver.place, found, "a case in space");
+    }
     for ppv in &case.output.ppv {
         let found = format!("= \"{}\": distances from a hole of an axisymmetric solid", ppv.name.value);
         context.error(&ppv.name.place, found, "probes of velocity");
@@ -116,23 +121,14 @@ fn check_materials(context: &mut Context<'_>, parts: &[Part<'_>]) {
     }
 }
 
-/// Forces across the section twist it, and gravity has an axis of its own.
+/// Gravity is along the axis; what is along z is refused of all 2D solids.
 fn check_loads(context: &mut Context<'_>) {
     let case = context.case;
-    let mut refuse = |components: &Components, axes: &[usize], found: &str, expected: &str| {
-        for value in axes.iter().filter_map(|&axis| components[axis].as_ref()) {
-            context.error(&value.place, found, expected);
-        }
-    };
     for load in &case.loads {
-        match &load.kind {
-            LoadKind::Force { force: components, .. } | LoadKind::Traction { traction: components, .. } => {
-                refuse(components, &[2], ": it twists an axisymmetric solid", "components along x and y");
-            }
-            LoadKind::Gravity { acceleration } => {
-                refuse(acceleration, &[0, 2], ": it is not along the axis", "gravity along y");
-            }
-            _ => {}
+        if let LoadKind::Gravity { acceleration } = &load.kind
+            && let Some(value) = &acceleration[0]
+        {
+            context.error(&value.place, ": it is not along the axis", "gravity along y");
         }
     }
 }

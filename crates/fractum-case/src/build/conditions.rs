@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fractum_fem::{Depth, Solid, facet_area, facet_depth};
+use fractum_fem::{Depth, Depths, Solid, depths_of, facet_area};
 use fractum_math::Vec3;
 use fractum_mesh::quality::{area_vector, signed_volume};
 use fractum_scene::{Bonded, CrackPressure, Gravity, Load, Motion, NodalForce, Pressure, Support};
@@ -112,10 +112,11 @@ impl Context<'_> {
         };
         let total: f64 = areas.iter().map(|(_, area)| area).sum();
         match points {
-            LoadedPoints::Nodes(numbering, _) if total <= 0.0 => {
+            LoadedPoints::Nodes(numbering, surface) if total <= 0.0 => {
                 let nodes = self.selected_nodes(on, numbering);
                 self.refuse_divided_volume(on);
-                let measures = on.group.as_ref().map_or_else(HashMap::new, |group| self.measures(group, numbering));
+                let measures =
+                    on.group.as_ref().map_or_else(HashMap::new, |group| self.measures(group, numbering, surface));
                 let measure = |node: &u32| measures.get(node).copied().unwrap_or_default();
                 let total: f64 = nodes.iter().map(measure).sum();
                 let equal = 1.0 / nodes.len().max(1) as f64;
@@ -138,33 +139,26 @@ impl Context<'_> {
         }
     }
 
-    /// What belongs to each node of a group in the file: volume of tetrahedra, or area of triangles, or length of lines; none of points.
-    fn measures(&self, group: &Spanned<String>, numbering: &Numbering) -> HashMap<u32, f64> {
-        let mesh = self.mesh;
-        let groups = mesh.group(&group.value);
-        let mut measures = HashMap::new();
-        let mut give = |corners: &[u32], measure: f64| {
-            for &node in corners {
-                *measures.entry(numbering.scene_node[node as usize]).or_default() += measure / corners.len() as f64;
-            }
-        };
+    /// What belongs to each node of a group in the file: volume of elements, or area of facets, or length of lines in space; none of points.
+    fn measures(&self, group: &Spanned<String>, numbering: &Numbering, surface: &Surface) -> HashMap<u32, f64> {
+        let (mesh, groups) = (self.mesh, self.mesh.group(&group.value));
+        let mut measures = Measures { numbering, depths: surface.depths.as_ref(), of_nodes: HashMap::new() };
+        let places = |node: u32| mesh.nodes[node as usize];
         for corners in groups.iter().flat_map(|group| &group.tetrahedra).map(|&t| mesh.tetrahedra[t as usize]) {
-            give(&corners, signed_volume(corners.map(|node| mesh.nodes[node as usize])).abs());
+            measures.give(corners, corners.map(places), signed_volume(corners.map(places)).abs());
         }
-        let is_solid = groups.iter().any(|group| !group.tetrahedra.is_empty());
-        for corners in
-            groups.iter().filter(|_| !is_solid).flat_map(|group| &group.triangles).map(|&t| mesh.triangles[t as usize])
-        {
-            give(&corners, area_vector(corners.map(|node| mesh.nodes[node as usize])).norm());
+        if measures.of_nodes.is_empty() {
+            for corners in groups.iter().flat_map(|group| &group.triangles).map(|&t| mesh.triangles[t as usize]) {
+                measures.give(corners, corners.map(places), area_vector(corners.map(places)).norm());
+            }
         }
-        let has_area = is_solid || groups.iter().any(|group| !group.triangles.is_empty());
-        for ends in
-            groups.iter().filter(|_| !has_area).flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize])
-        {
-            let [a, b] = ends.map(|node| mesh.nodes[node as usize]);
-            give(&ends, (b - a).norm());
+        if measures.of_nodes.is_empty() {
+            for ends in groups.iter().flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize]) {
+                let [a, b] = ends.map(places);
+                measures.give(ends, [a, b], (b - a).norm());
+            }
         }
-        measures
+        measures.of_nodes
     }
 
     /// Outward facets that are meant; an error if there are none on the surface.
@@ -199,7 +193,7 @@ impl Context<'_> {
         let scene = |n: u32| numbering.scene_node[n as usize];
         let mut facets = Vec::new();
         for group in self.mesh.group(&group.value) {
-            if surface.is_plane {
+            if surface.depths.is_some() {
                 let lines = group.lines.iter().map(|&l| self.mesh.lines[l as usize].map(scene));
                 facets.extend(lines.filter_map(|[a, b]| surface.outward([a, b, b])));
             } else {
@@ -236,21 +230,38 @@ pub(super) enum LoadedPoints<'a> {
     Particles(&'a Bonded),
 }
 
+/// What belongs to the nodes of a group.
+struct Measures<'a> {
+    numbering: &'a Numbering,
+    depths: Option<&'a Depths>,
+    of_nodes: HashMap<u32, f64>,
+}
+
+impl Measures<'_> {
+    /// Gives the corners of an element their shares of its measure.
+    fn give<const N: usize>(&mut self, corners: [u32; N], places: [Vec3; N], measure: f64) {
+        let nodes = corners.map(|node| self.numbering.scene_node[node as usize]);
+        let depth = self.depths.map_or(Depth::Thickness(1.0), |depths| depths.at(&nodes));
+        let middle = places.iter().sum::<Vec3>() / N as f64;
+        for (node, share) in nodes.into_iter().zip(depth.shares(places.each_ref())) {
+            *self.of_nodes.entry(node).or_default() += measure * depth.at(&middle) * share;
+        }
+    }
+}
+
 /// The surface of the solids, searchable by the nodes of a facet.
 pub(super) struct Surface<'a> {
     pub(super) facets: &'a [[u32; 3]],
     by_nodes: HashMap<[u32; 3], [u32; 3]>,
-    pub(super) is_plane: bool,
-    /// Depth behind each facet where bodies are plane.
-    depth: HashMap<[u32; 3], Depth>,
+    /// Depths of plane bodies; none in space.
+    depths: Option<Depths>,
     positions: &'a [Vec3],
 }
 
 impl<'a> Surface<'a> {
     pub(super) fn new(boundary: &'a [[u32; 3]], solid: &Solid, positions: &'a [Vec3]) -> Self {
-        let depth = boundary.iter().filter_map(|facet| Some((sorted(*facet), facet_depth(solid, facet)?))).collect();
         let by_nodes = boundary.iter().map(|&facet| (sorted(facet), facet)).collect();
-        Surface { facets: boundary, by_nodes, is_plane: solid.is_plane(), depth, positions }
+        Surface { facets: boundary, by_nodes, depths: depths_of(solid).cloned(), positions }
     }
 
     /// Outward normal of a facet without load, as long as its area [m²]: around an axis that of the whole turn.
@@ -260,8 +271,8 @@ impl<'a> Surface<'a> {
     }
 
     /// Depth behind a facet of the surface; none in space.
-    pub(super) fn depth_of(&self, facet: &[u32; 3]) -> Option<Depth> {
-        self.depth.get(&sorted(*facet)).copied()
+    fn depth_of(&self, &[a, b, _]: &[u32; 3]) -> Option<Depth> {
+        self.depths.as_ref().map(|depths| depths.at(&[a, b]))
     }
 
     /// Middle of a facet without load [m].
@@ -272,7 +283,7 @@ impl<'a> Surface<'a> {
 
     /// Nodes of a facet, each once.
     pub(super) fn corners<'f>(&self, facet: &'f [u32; 3]) -> &'f [u32] {
-        &facet[..if self.is_plane { 2 } else { 3 }]
+        &facet[..if self.depths.is_some() { 2 } else { 3 }]
     }
 
     /// The facet with these nodes, oriented outwards.

@@ -5,7 +5,7 @@ use fractum_output::warning::Code;
 
 use crate::measure::Count;
 use crate::model::{
-    BodyKind, Case, Components, Load, LoadKind, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
+    BodyKind, Case, Load, LoadKind, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
 };
 use crate::{Diagnostic, TimeFunction};
 
@@ -65,14 +65,13 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
         let functions = support.motion.iter().flatten();
         functions.filter_map(|motion| function_of(&motion.value)).any(|function| !function.is_zero())
     };
-    let of_any = |components: &Components| components.iter().flatten().any(|function| !function.value.is_zero());
     let body = |kind: &BodyKind| match kind {
         BodyKind::Solid(solid) => {
             solid.initial_velocity.iter().flatten().any(|field| field.constant_value() != Some(0.0))
         }
         BodyKind::Rigid(rigid) => {
             let thrown = rigid.initial_velocity.iter().any(Option::is_some);
-            thrown || [&rigid.velocity, &rigid.spin, &rigid.force].into_iter().any(of_any)
+            thrown || rigid.functions().any(|function| !function.value.is_zero())
         }
         BodyKind::Bonded(_) | BodyKind::Particles(_) => true,
     };

@@ -1,6 +1,6 @@
 //! Bodies: meshed solids, bonded and loose particles, rigid bodies.
 
-use fractum_fem::{Depth, Formulation, Kinematics, Plane};
+use fractum_fem::{Formulation, Kinematics, Plane};
 use fractum_scene::ContactParameters;
 
 use super::{BondedBody, LooseBody, Material, RigidBody};
@@ -79,11 +79,6 @@ impl SolidBody {
     /// Whether it is turned about the y axis.
     pub fn is_axisymmetric(&self) -> bool {
         self.plane.as_ref().is_some_and(|plane| plane.value == Plane::Axisymmetric)
-    }
-
-    /// How far it extends across its plane, where it is plane.
-    pub fn across(&self) -> Depth {
-        if self.is_axisymmetric() { Depth::Turn } else { Depth::Thickness(self.depth) }
     }
 
     /// Whether each of several processes needs the cells of all: edges of plain elements gather stresses around them.

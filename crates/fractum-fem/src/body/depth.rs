@@ -23,11 +23,12 @@ impl Depth {
         }
     }
 
-    /// Shares of the two ends of a line in what is spread evenly over its area.
-    pub fn shares(self, [a, b]: [&Vec3; 2]) -> [f64; 2] {
+    /// Shares of the ends of a line in what is spread evenly over its area, or of the corners of a triangle over its volume.
+    pub fn shares<const N: usize>(self, corners: [&Vec3; N]) -> [f64; N] {
+        let sum: f64 = corners.iter().map(|corner| corner.x).sum();
         match self {
-            Depth::Turn if a.x + b.x > 0.0 => [2.0 * a.x + b.x, a.x + 2.0 * b.x].map(|r| r / (3.0 * (a.x + b.x))),
-            _ => [0.5; 2],
+            Depth::Turn if sum > 0.0 => corners.map(|corner| (sum + corner.x) / ((N + 1) as f64 * sum)),
+            _ => [1.0 / N as f64; N],
         }
     }
 }
@@ -38,5 +39,27 @@ pub fn facet_area([a, b, c]: [Vec3; 3], depth: Option<Depth>) -> Vec3 {
     match depth {
         Some(depth) => Vec3::new(b.y - a.y, a.x - b.x, 0.0) * depth.at(&((a + b) * 0.5)),
         None => (b - a).cross(&(c - a)) * 0.5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A load that is even over the volume has the resultant moment of the volume: the mean radius over a ring of a line and of a triangle.
+    #[test]
+    fn shares_of_a_ring_have_its_mean_radius() {
+        for [a, b, c] in [[0.0, 1.0, 0.0], [0.5, 0.7, 2.0], [3.0, 3.0, 3.1]] {
+            let [x, y, z] = [a, b, c].map(|r| Vec3::new(r, 0.3 * r, 0.0));
+            let line = Depth::Turn.shares([&x, &y]);
+            assert!((line.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            let mean = (a * a + a * b + b * b) / (1.5 * (a + b));
+            assert!((line[0] * a + line[1] * b - mean).abs() < 1e-14, "{line:?}");
+            let triangle = Depth::Turn.shares([&x, &y, &z]);
+            assert!((triangle.iter().sum::<f64>() - 1.0).abs() < 1e-15);
+            let mean = (a * a + b * b + c * c + a * b + b * c + c * a) / (2.0 * (a + b + c));
+            assert!((triangle[0] * a + triangle[1] * b + triangle[2] * c - mean).abs() < 1e-14, "{triangle:?}");
+        }
+        assert_eq!(Depth::Thickness(0.1).shares([&Vec3::x(), &Vec3::y(), &Vec3::z()]), [1.0 / 3.0; 3]);
     }
 }

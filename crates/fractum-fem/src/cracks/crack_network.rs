@@ -13,7 +13,7 @@ use crate::body::ElementKind;
 use crate::body::facet_area;
 use crate::element::{measure_and_gradients, regular_edge};
 use crate::solid::Solid;
-use crate::solid::thickness::facet_depth;
+use crate::solid::depths::facet_depth;
 
 const NONE: u32 = u32::MAX;
 

@@ -1,9 +1,9 @@
 pub(crate) mod body_blocks;
 pub(crate) mod body_model;
+pub(crate) mod depths;
 pub(crate) mod evaluate;
 pub(crate) mod neighbours;
 pub(crate) mod subcycling;
-pub(crate) mod thickness;
 
 use std::ops::Range;
 
@@ -20,10 +20,10 @@ use crate::damage::threshold::{LengthReport, characteristic_length};
 use crate::error::SolidError;
 pub(crate) use crate::solid::body_model::BodyModel;
 use crate::solid::body_model::Chosen;
+use crate::solid::depths::Depths;
 use crate::solid::evaluate::Block;
 use crate::solid::neighbours::{Alone, Neighbours};
 use crate::solid::subcycling::Subcycling;
-use crate::solid::thickness::Thicknesses;
 
 /// Finite elements of all solid bodies, with their nodes.
 ///
@@ -55,7 +55,7 @@ pub struct Solid {
     pub(crate) copies: Vec<u32>,
     /// What cells with steps of two sizes need; none where all take the same.
     pub(crate) subcycling: Option<Box<Subcycling>>,
-    pub(crate) thicknesses: Thicknesses,
+    pub(crate) depths: Depths,
 }
 
 impl Solid {
@@ -122,7 +122,7 @@ impl Solid {
             chunk_work: vec![HalfSteps::default(); nodes.len().div_ceil(CHUNK)],
             reference: nodes,
             mass,
-            thicknesses: Thicknesses::of(&bodies),
+            depths: Depths::of(&bodies),
             bodies,
             blocks,
             slots,

@@ -177,6 +177,9 @@ impl RigidBody {
 
     /// Whether its middle has come within another one since the start: rigid bodies do not touch each other.
     pub fn has_entered(&self, other: &RigidBody) -> bool {
+        if !matches!(other.form, Form::Shape { hollow: false, .. }) {
+            return false;
+        }
         let Some(middle) = self.middle() else { return false };
         let at_start = middle - self.displacement() + other.displacement();
         other.covers(&middle) && !other.covers(&at_start)
@@ -262,6 +265,14 @@ impl RigidBody {
         let given = |drive: &Drive| if let Drive::Velocity(given) = drive { given(middle, &self.start) } else { 0.0 };
         let [velocity, spin] = [&self.along, &self.about].map(|drives| Vec3::from_fn(|axis, _| given(&drives[axis])));
         Frame { velocity, spin, ..self.frame }.moved(dt_after)
+    }
+
+    /// Force that is asked of its servo, and that with which it presses [N]; none without a servo.
+    pub fn servo_forces(&self, time: f64) -> Option<[f64; 2]> {
+        self.along.iter().zip(self.force.iter()).find_map(|(drive, force)| match drive {
+            Drive::Servo(servo) => Some([servo.wanted(time, &self.start), -servo.sign * force]),
+            _ => None,
+        })
     }
 
     /// Finds the areas that the pressures of servos act on, where planes that move enclose them.

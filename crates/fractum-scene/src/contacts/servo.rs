@@ -55,15 +55,22 @@ pub(super) struct ServoStep {
 }
 
 impl Servo {
-    /// Velocity along the axis in the step that follows [m/s].
+    /// Force that is asked for [N].
     ///
     /// - `start`: where the body began
-    pub(super) fn velocity(&self, step: &ServoStep, start: &Vec3) -> f64 {
+    pub(super) fn wanted(&self, time: f64, start: &Vec3) -> f64 {
         let area = match self.area {
             Some(ServoArea::Given(area) | ServoArea::Between { now: area, .. }) => area,
             None => 1.0,
         };
-        let target = area * (self.target)(step.time, start);
+        area * (self.target)(time, start)
+    }
+
+    /// Velocity along the axis in the step that follows [m/s].
+    ///
+    /// - `start`: where the body began
+    pub(super) fn velocity(&self, step: &ServoStep, start: &Vec3) -> f64 {
+        let target = self.wanted(step.time, start);
         let missing = target + self.sign * step.force;
         let mass = INERTIA * step.touched;
         let resistance = mass + step.dt * self.reach * target.abs() / self.speed;

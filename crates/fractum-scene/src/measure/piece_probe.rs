@@ -111,7 +111,7 @@ pub fn passing_size(solid: &Solid, fragments: &[Fragment], share: f64) -> f64 {
 /// Diameter of the sphere of a fragment's volume; where solids are plane, of the circle of its area [m].
 pub fn fragment_size(solid: &Solid, fragment: &Fragment) -> f64 {
     let plane = fragment.nodes.first().filter(|_| solid.is_plane() && !is_axisymmetric(solid));
-    equivalent_diameter(fragment.volume, plane.map(|&node| thickness_at(solid, [node; 2])))
+    equivalent_diameter(fragment.volume, plane.map(|&node| thickness_at(solid, &[node])))
 }
 
 /// Diameter of the sphere of a volume; of the circle of its area where there is a thickness [m].

@@ -38,6 +38,8 @@ pub struct BondedStaticState {
 
 /// Share of the largest load below which a body has lost its strength.
 const STRENGTHLESS: f64 = 1e-3;
+/// Compliance under loads over that of the intact body from which on it gives way: what would be found beyond is no small displacement.
+const GIVES_WAY: f64 = 10.0;
 /// Most iterations of one equilibrium.
 const ITERATIONS: usize = 50_000;
 
@@ -48,6 +50,8 @@ pub struct BondedStatics {
     /// Particle, axis and displacement of what moves, at the end.
     prescribed: Vec<(u32, usize, f64)>,
     stage: LoadStage,
+    /// Work of the loads at their full size on the intact body, where they alone drive it [J].
+    intact: Option<f64>,
     /// Work of supports and loads from none to all of their size, were nothing to break, times two [J].
     push: f64,
     /// Work of supports and loads so far [J].
@@ -105,8 +109,17 @@ impl BondedStatics {
             Vec::new()
         };
         let run = QuasiStatic::under_loads(lattice, supports, &loads, &guess, &what)?;
-        let mut statics =
-            BondedStatics { run, settings, prescribed, stage: LoadStage::Failing, push: 0.0, work: 0.0, sudden: 0.0 };
+        let driven = prescribed.iter().any(|(.., value)| *value != 0.0);
+        let mut statics = BondedStatics {
+            intact: (loaded && !driven).then(|| run.body().work_of_loads()),
+            run,
+            settings,
+            prescribed,
+            stage: LoadStage::Failing,
+            push: 0.0,
+            work: 0.0,
+            sudden: 0.0,
+        };
         statics.push = statics.push();
         Ok(statics)
     }
@@ -141,6 +154,11 @@ impl BondedStatics {
     /// Whether the body has come apart, holds at the end, or has used up its steps.
     pub fn is_finished(&self, scene: &Scene) -> bool {
         self.stage != LoadStage::Failing || scene.clock.step >= self.settings.most_steps
+    }
+
+    /// Whether the body has broken so far that it does not bear its loads.
+    pub fn has_given_way(&self) -> bool {
+        self.stage == LoadStage::Separated && self.run.body().is_loaded()
     }
 
     /// Equilibria found, and iterations for all of them.
@@ -208,14 +226,17 @@ impl BondedStatics {
                 self.sudden += elastic + given - square * self.run.body().energy() - lost;
                 self.push = self.push();
             }
-            // What is left cannot bear the loads.
-            Err(DemError::NotConverged { .. }) if self.run.body().is_loaded() => {
-                self.stage = LoadStage::Separated;
-                scene.ledger[EnergyKind::Elastic] -= lost;
-                scene.ledger[EnergyKind::Removed] += lost;
-            }
+            Err(DemError::NotConverged { .. }) if self.run.body().is_loaded() => self.stage = LoadStage::Separated,
             Err(DemError::Interrupted) => return Err(StepError::Interrupted { step, time }),
             Err(error) => return Err(StepError::NoBondedEquilibrium { step, time, error }),
+        }
+        if self.intact.is_some_and(|intact| self.run.body().work_of_loads() > GIVES_WAY * intact) {
+            self.stage = LoadStage::Separated;
+        }
+        if self.stage == LoadStage::Separated {
+            // What is left does not bear the loads: the scene stays as it was before, but for the bonds.
+            scene.ledger[EnergyKind::Elastic] -= lost;
+            scene.ledger[EnergyKind::Removed] += lost;
         }
         let end = self.settings.end;
         let BondedBody { fracture, bonds, .. } = &mut scene.bonded.bodies[0];

@@ -19,6 +19,8 @@ const STEPS_BETWEEN_LOOKS: [f64; 2] = [128.0, 256.0];
 const LOOKS: f64 = 50.0;
 /// The same at overlaps of particles alone, which costs a small part of a step: an impact lasts some fifty steps.
 const STEPS_BETWEEN_LOOKS_AT_OVERLAPS: u64 = 20;
+/// Share of the force of a servo by which it may be missed at the end of a run.
+const SERVO_MISSES: f64 = 0.1;
 
 impl Simulation {
     /// Looks at the state: of motion and of heat now and then, at rest after every equilibrium.
@@ -94,10 +96,50 @@ impl Simulation {
         self.warn_of_merged_bands()?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
+        self.warn_of_giving_way()?;
+        if matches!(end, End::Finished(_)) {
+            self.warn_of_servos()?;
+        }
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
             (end, _) => end,
         })
+    }
+
+    /// Warns of a bonded body that does not bear its loads.
+    fn warn_of_giving_way(&mut self) -> Result<(), Failure> {
+        if !self.solver.has_given_way() {
+            return Ok(());
+        }
+        let factor = self.time() / self.case.solver.end;
+        let text = format!("it gave way under its loads at {} of them, and bears no more", percent(factor));
+        let name = &self.scene.bonded.bodies()[0].name;
+        let found = Warning::new(Code::GaveWay, format!("body \"{name}\""), text);
+        self.warn(
+            found
+                .remedy("its strength is the peak; to see what follows, move a support, or choose kind = \"explicit\""),
+        )
+    }
+
+    /// Warns of rigid bodies that do not press at the end as their servos should.
+    fn warn_of_servos(&mut self) -> Result<(), Failure> {
+        let time = self.time();
+        let bodies = self.scene.contacts.rigid_bodies().iter();
+        let missed = bodies.filter_map(|body| {
+            let [wanted, pressed] = body.servo_forces(time)?;
+            if (pressed - wanted).abs() <= SERVO_MISSES * wanted {
+                return None;
+            }
+            let [wanted, pressed] = [wanted, pressed].map(|force| quantity(force, "N"));
+            let text = format!("it presses with {pressed} at the end, and {wanted} are asked for");
+            let found = Warning::new(Code::Servo, format!("body \"{}\"", body.name), text);
+            Some(
+                found
+                    .remedy("let it act longer, raise servo.speed, or look for what stands in its way or is not there"),
+            )
+        });
+        let missed: Vec<Warning> = missed.collect();
+        missed.into_iter().try_for_each(|found| self.warn(found))
     }
 
     /// Warns of bodies that came apart into single nodes.

@@ -33,6 +33,10 @@ impl BreakingRun {
         Ok(Advance::measured(scene.clock.time, scene.clock.dt_before, false))
     }
 
+    pub(super) fn has_given_way(&self) -> bool {
+        self.0.has_given_way()
+    }
+
     pub(super) fn effort(&self) -> String {
         let (equilibria, iterations) = self.0.effort();
         format!("{equilibria} equilibria of the bonds, {iterations} iterations of conjugate gradients")

@@ -200,6 +200,11 @@ impl Solver {
         if let Solver::Static(run) = self { run.iterations() } else { 0 }
     }
 
+    /// Whether a bonded body at rest has broken so far that it does not bear its loads.
+    pub(crate) fn has_given_way(&self) -> bool {
+        matches!(self, Solver::BondedStatic(run) if run.has_given_way())
+    }
+
     /// How much work it was, in words.
     pub(crate) fn effort(&self) -> Option<String> {
         match self {
