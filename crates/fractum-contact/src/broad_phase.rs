@@ -17,7 +17,7 @@ const UNEVEN: f64 = 3.0;
 /// as the largest of them with its skin, so that the search walks through memory; for radii that differ by more, up to
 /// any ratio, it walks down a tree of boxes.
 pub fn close_pairs(centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<[u32; 2]> {
-    close_pairs_of(centres, radii, skin, |_| true)
+    close_pairs_of(centres, radii, skin, &|_| true)
 }
 
 /// [`close_pairs`] of which one sphere at least is wanted: cheap where these are few and lie together.
@@ -25,7 +25,7 @@ pub fn close_pairs_of(
     centres: &[Vec3],
     radii: &[f64],
     skin: f64,
-    is_wanted: impl Fn(usize) -> bool + Sync,
+    is_wanted: &(dyn Fn(usize) -> bool + Sync),
 ) -> Vec<[u32; 2]> {
     let widest = radii.iter().fold(0.0f64, |a, &b| a.max(b));
     let width = 2.0 * widest + skin;
@@ -49,14 +49,14 @@ pub fn close_pairs_of(
 }
 
 /// Spheres of which pairs are looked for.
-struct NearSpheres<'a, W> {
+struct NearSpheres<'a> {
     centres: &'a [Vec3],
     radii: &'a [f64],
     skin: f64,
-    is_wanted: W,
+    is_wanted: &'a (dyn Fn(usize) -> bool + Sync),
 }
 
-impl<W: Fn(usize) -> bool + Sync> NearSpheres<'_, W> {
+impl NearSpheres<'_> {
     /// A wanted sphere with another one, if they are near; each pair is found from one side.
     #[inline]
     fn pair(&self, i: u32, j: u32) -> Option<[u32; 2]> {
@@ -136,7 +136,7 @@ mod tests {
             prop_assert_eq!(&close_pairs(&centres, &radii, skin), &expected);
             let is_wanted = |i: usize| i % 3 == 1 && centres[i].x < 1.0;
             expected.retain(|pair| pair.iter().any(|&i| is_wanted(i as usize)));
-            prop_assert_eq!(close_pairs_of(&centres, &radii, skin, is_wanted), expected);
+            prop_assert_eq!(close_pairs_of(&centres, &radii, skin, &is_wanted), expected);
         }
     }
 }

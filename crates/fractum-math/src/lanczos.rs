@@ -12,7 +12,7 @@ use crate::{CHUNK, sum_chunks};
 pub fn largest_eigenvalue<const N: usize>(
     count: usize,
     steps: usize,
-    mut apply: impl FnMut(&[SVector<f64, N>]) -> Vec<SVector<f64, N>>,
+    apply: &mut dyn FnMut(&[SVector<f64, N>]) -> Vec<SVector<f64, N>>,
 ) -> f64 {
     type Vectors<const N: usize> = Vec<SVector<f64, N>>;
     let norm = |v: &Vectors<N>| sum_chunks(v.len(), |i| v[i].norm_squared()).sqrt();
@@ -68,8 +68,8 @@ mod tests {
             (0..n).map(|i| Vec3::x() * (pull(i, Some(i + 1)) + pull(i, i.checked_sub(1)))).collect()
         };
         let exact = 4.0 * (0.5 * std::f64::consts::PI * (n - 1) as f64 / n as f64).sin().powi(2);
-        let found = largest_eigenvalue(n, 30, chain);
+        let found = largest_eigenvalue(n, 30, &mut { chain });
         assert!((found / exact - 1.0).abs() < 1e-6, "{found} {exact}");
-        assert_eq!(largest_eigenvalue(0, 10, |_: &[Vec3]| Vec::new()), 0.0);
+        assert_eq!(largest_eigenvalue(0, 10, &mut |_: &[Vec3]| Vec::new()), 0.0);
     }
 }

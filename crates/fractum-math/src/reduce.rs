@@ -6,8 +6,13 @@ pub const CHUNK: usize = 4096;
 /// Sums `term(i)` for `i` below `count`, in parallel, with the same bits for any number of threads: fixed chunks are
 /// summed in order, then their sums are added in order.
 pub fn sum_chunks(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let chunk_sum = |chunk: usize| -> f64 { (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&term).sum() };
-    let partial: Vec<f64> = (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk_sum).collect();
+    let of_chunk = |chunk: usize| -> f64 { (chunk * CHUNK..((chunk + 1) * CHUNK).min(count)).map(&term).sum() };
+    add_in_order(count.div_ceil(CHUNK), &of_chunk)
+}
+
+/// Apart from its callers, so that the parallel loop is compiled once and not for each term.
+fn add_in_order(chunks: usize, of_chunk: &(dyn Fn(usize) -> f64 + Sync)) -> f64 {
+    let partial: Vec<f64> = (0..chunks).into_par_iter().map(of_chunk).collect();
     partial.iter().sum()
 }
 

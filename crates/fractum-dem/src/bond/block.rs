@@ -136,44 +136,66 @@ impl<L: BondLaw> Block<L> {
         orientation: &[Rotation],
         law: &L,
     ) {
+        self.sum_wanted(position, orientation, law, FORCES, DETAIL);
+    }
+
+    fn sum_bonds_apart<const FORCES: bool, const DETAIL: u8>(
+        &mut self,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        law: &L,
+    ) {
+        self.sum_whatever(position, orientation, law, FORCES, DETAIL);
+    }
+
+    /// One body for whatever is wanted.
+    #[inline(never)]
+    fn sum_whatever(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, forces: bool, detail: u8) {
+        self.sum_wanted(position, orientation, law, forces, detail);
+    }
+
+    /// - `forces`: whether forces and moments are wanted
+    /// - `detail`: what is wanted beside them, such as [`VIRIALS`]
+    #[inline(always)]
+    fn sum_wanted(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, forces: bool, detail: u8) {
         debug_assert!(self.start + self.count <= position.len());
         let Block { groups, memory, separated, sums, virials, virial_bounds, loads, .. } = self;
-        if FORCES {
+        if forces {
             sums.fill([0.0; 6]);
         }
-        if DETAIL == LOADS {
+        if detail == LOADS {
             loads.resize(groups.len(), LoadLanes::default());
         }
-        if DETAIL == VIRIALS || DETAIL == BOUNDS {
+        if detail == VIRIALS || detail == BOUNDS {
             // Both at once, so that no later step allocates.
             make_room(sums.len(), virials, virial_bounds);
         }
-        if DETAIL == VIRIALS {
+        if detail == VIRIALS {
             virials.fill([0.0; 6]);
         }
-        if DETAIL == BOUNDS {
+        if detail == BOUNDS {
             virial_bounds.fill([0.0; 2]);
         }
         for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
             let bonds = group.lanes(position, orientation);
             let before = L::separated(&group.recent);
-            let forces = law.forces(&bonds, &group.own, &mut group.recent, memory);
+            let found = law.forces(&bonds, &group.own, &mut group.recent, memory);
             let fresh = L::separated(&group.recent) & !before;
             if fresh != 0 {
                 let lanes = (0..WIDTH).filter(|lane| fresh >> lane & 1 == 1);
                 separated.extend(lanes.map(|lane| (index * WIDTH + lane) as u32));
             }
-            if FORCES {
-                add_forces(&group.slots, &forces, sums);
+            if forces {
+                add_forces(&group.slots, &found, sums);
             }
-            if DETAIL == LOADS {
-                loads[index] = load_sizes(bonds.gap, &forces);
+            if detail == LOADS {
+                loads[index] = load_sizes(bonds.gap, &found);
             }
-            if DETAIL == BOUNDS {
-                add_bounds(&group.slots, &bonds.gap, &forces.force, virial_bounds);
+            if detail == BOUNDS {
+                add_bounds(&group.slots, &bonds.gap, &found.force, virial_bounds);
             }
-            if DETAIL == VIRIALS {
-                add_virials(&group.slots, &bonds.gap, &forces.force, virials);
+            if detail == VIRIALS {
+                add_virials(&group.slots, &bonds.gap, &found.force, virials);
             }
         }
     }
@@ -191,7 +213,7 @@ widest! {
         position: &[Vec3],
         orientation: &[Rotation],
         law: &L,
-    ) = Block::<L>::sum_bonds::<FORCES, DETAIL>;
+    ) = Block::<L>::sum_bonds::<FORCES, DETAIL>, otherwise Block::<L>::sum_bonds_apart::<FORCES, DETAIL>;
 }
 
 widest! {

@@ -57,12 +57,11 @@ impl<L: BondLaw> BondNetwork<L> {
         let BondNetwork { law, blocks, part, .. } = self;
         let sum = |block: &mut Block<L>| sum_bonds::<L, FORCES, DETAIL>(block, position, orientation, law);
         let Some(part) = part else {
-            blocks.par_iter_mut().for_each(sum);
+            each(blocks, None, &sum);
             return;
         };
         let some = |blocks: &mut [Block<L>], is_outer: &[bool], outer: bool| {
-            let meant = blocks[own.clone()].par_iter_mut().zip(&is_outer[own.clone()]);
-            meant.filter(|(_, is_outer)| **is_outer == outer).for_each(|(block, _)| sum(block));
+            each(&mut blocks[own.clone()], Some((&is_outer[own.clone()], outer)), &sum);
         };
         some(blocks, part.is_outer(), true);
         let inner = |blocks: &mut [Block<L>], is_outer: &[bool]| some(blocks, is_outer, false);
@@ -100,10 +99,7 @@ impl<L: BondLaw> BondNetwork<L> {
     }
 
     /// Values of all blocks, by those of own ones.
-    pub(super) fn of_all_blocks<const N: usize>(
-        &self,
-        of: impl Fn(&Block<L>) -> [f64; N] + Sync + Send,
-    ) -> Vec<[f64; N]> {
+    pub(super) fn of_all_blocks<const N: usize>(&self, of: &(dyn Fn(&Block<L>) -> [f64; N] + Sync)) -> Vec<[f64; N]> {
         let own = self.own_blocks();
         let mine: Vec<[f64; N]> = self.blocks[own].par_iter().map(of).collect();
         let Some(part) = &self.part else { return mine };
@@ -121,6 +117,20 @@ impl<L: BondLaw> BondNetwork<L> {
             }
         }
     }
+}
+
+/// Evaluates all blocks, or those of which it is known whether they are outer ones. Apart from what is summed, so that the parallel loop is compiled
+/// once for a law.
+fn each<L: BondLaw>(
+    blocks: &mut [Block<L>],
+    meant: Option<(&[bool], bool)>,
+    evaluate: &(dyn Fn(&mut Block<L>) + Sync),
+) {
+    blocks.par_iter_mut().enumerate().for_each(|(number, block)| {
+        if meant.is_none_or(|(is_outer, outer)| is_outer[number] == outer) {
+            evaluate(block);
+        }
+    });
 }
 
 fn joined(one: [f64; 6], other: [f64; 6]) -> [f64; 12] {

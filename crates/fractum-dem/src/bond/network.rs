@@ -190,7 +190,7 @@ impl<L: BondLaw> BondNetwork<L> {
             memories
                 .fold(0.0, |sum, (bond, memory)| sum + self.law.dissipated(self.length[bond], &self.own[bond], memory))
         };
-        self.of_all_blocks(|block| [of(block)]).iter().flatten().sum()
+        self.of_all_blocks(&|block| [of(block)]).iter().flatten().sum()
     }
 
     /// Bonds that have separated by the law since the last call, ascending, with the way they did. All ranks must call it where several
@@ -367,7 +367,7 @@ impl<L: BondLaw> BondNetwork<L> {
                 sum_energies(block, position, orientation, &self.law, self.mean.as_ref());
             [tension, bending, torsion]
         };
-        let parts = self.of_all_blocks(of).into_iter();
+        let parts = self.of_all_blocks(&of).into_iter();
         let parts = parts.map(|[tension, bending, torsion]| BondEnergy { tension, bending, torsion });
         let bonds = parts.fold(BondEnergy::default(), BondEnergy::add);
         match &self.mean {

@@ -75,7 +75,7 @@ impl<L: BondLaw> BondNetwork<L> {
             particles.mass.iter().zip(&particles.inertia).map(|(m, r)| [1.0 / m.sqrt(), 1.0 / r.sqrt()]).collect();
         let parts =
             |q: &Vector6<f64>, [m, r]: [f64; 2]| (Vec3::new(q[0], q[1], q[2]) * m, Vec3::new(q[3], q[4], q[5]) * r);
-        let square = largest_eigenvalue(particles.len(), LANCZOS_STEPS, |q: &[Vector6<f64>]| {
+        let square = largest_eigenvalue(particles.len(), LANCZOS_STEPS, &mut |q: &[Vector6<f64>]| {
             let size = q
                 .iter()
                 .zip(&roots)

@@ -96,7 +96,7 @@ impl Fracture {
         let mut known: Vec<[u32; 2]> = pairs.iter().filter(|face| face.stranger).map(|face| face.pair).collect();
         known.sort_unstable();
         let start = range.start as u32;
-        for [i, j] in close_pairs_of(centres, radii, skin, |i| lost[i]) {
+        for [i, j] in close_pairs_of(centres, radii, skin, &|i| lost[i]) {
             let pair = [i + start, j + start];
             if !graph.were_bonded(pair) && known.binary_search(&pair).is_err() {
                 let rest = radii[i as usize] + radii[j as usize];

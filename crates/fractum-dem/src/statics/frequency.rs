@@ -39,7 +39,7 @@ pub fn highest_frequency(bonds: &Bonds, particles: &Particles, range: Range<usiz
     };
     let free = vec![0; position.len()];
     let (mut x, mut force) = (vec![[0.0; 6]; position.len()], vec![[0.0; 6]; position.len()]);
-    let square = largest_eigenvalue(position.len(), LANCZOS_STEPS, |q: &[Vector6<f64>]| {
+    let square = largest_eigenvalue(position.len(), LANCZOS_STEPS, &mut |q: &[Vector6<f64>]| {
         x.iter_mut().zip(q).enumerate().for_each(|(i, (x, q))| *x = scaled(i, &q.data.0[0]));
         lattice.apply(&x, &free, &mut force);
         force.iter().enumerate().map(|(i, f)| Vector6::from(scaled(i, f))).collect()

@@ -111,7 +111,7 @@ fn bound(solid: &Solid, counts: impl Fn(usize, u32) -> bool) -> StableStep {
 fn highest_eigenvalue(solid: &mut Solid, counts: impl Fn(&Solid, usize) -> bool) -> f64 {
     let root = |(node, m): (usize, &f64)| if counts(solid, node) { m.sqrt() } else { 0.0 };
     let root: Vec<f64> = solid.inverse_mass.iter().enumerate().map(root).collect();
-    largest_eigenvalue(root.len(), LANCZOS_STEPS, |q| scaled_stiffness(solid, q, &root))
+    largest_eigenvalue(root.len(), LANCZOS_STEPS, &mut |q| scaled_stiffness(solid, q, &root))
 }
 
 /// M^-½ K M^-½ q.

@@ -236,7 +236,7 @@ impl Ties {
             let forces = forces.chain(free.iter().map(|&i| own.force[i])).chain(free.iter().map(|&i| own.moment[i]));
             forces.zip(&root).map(|(force, root)| force / (-scale * root)).collect()
         };
-        largest_eigenvalue(count, LANCZOS_STEPS, stiffness).max(0.0).sqrt()
+        largest_eigenvalue(count, LANCZOS_STEPS, &mut { stiffness }).max(0.0).sqrt()
     }
 }
 

@@ -112,12 +112,12 @@ pub(in crate::fracture) trait StressBatch: StressCriterion {
 
 impl<C: StressCriterion> StressBatch for C {
     fn bounds_reach(&self, bounds: &[[f64; 2]], volume: &[f64], fraction: f64, limit: f64) -> bool {
-        let reaches = |(bounds, volume): (&[[f64; 2]], &[f64])| {
+        let reaches = |bounds: &[[f64; 2]], volume: &[f64]| {
             bounds.iter().zip(volume).any(|(&[tension, compression], volume)| {
                 self.bound_between(tension, compression) * fraction >= limit * volume
             })
         };
-        bounds.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(reaches)
+        any_block(bounds, volume, &reaches)
     }
 
     fn virials_reach(
@@ -129,7 +129,7 @@ impl<C: StressCriterion> StressBatch for C {
         reaching: &mut [bool],
     ) -> bool {
         let limit = limit * (1.0 - ROUND_OFF);
-        let reach = |(reaching, (virials, volume)): (&mut [bool], (&[Sym3], &[f64]))| {
+        let reach = |reaching: &mut [bool], virials: &[Sym3], volume: &[f64]| {
             let mut any = false;
             for (reaching, (virial, volume)) in reaching.iter_mut().zip(virials.iter().zip(volume)) {
                 *reaching = self.bound(&(*virial * (fraction / volume))) >= limit;
@@ -137,9 +137,7 @@ impl<C: StressCriterion> StressBatch for C {
             }
             any
         };
-        let blocks = virials.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK));
-        // All of them, whatever was found.
-        reaching.par_chunks_mut(BLOCK).zip(blocks).map(reach).reduce(|| false, |one, other| one || other)
+        fill_blocks(reaching, virials, volume, &reach)
     }
 
     fn search(&self, around: &Neighbourhoods<'_>, stress: &mut [Sym3], limit: f64) -> Vec<BlockSearch> {
@@ -185,7 +183,37 @@ fn search_blocks(
         (first + block * BLOCK..).zip(stress).for_each(|(i, stress)| look(i, stress, &mut found));
         found
     };
-    stress.par_chunks_mut(BLOCK).enumerate().map(block).collect()
+    blocks_of(stress, &block)
+}
+
+// The parallel loops stand apart from the laws, so that they are compiled once and not for each of them.
+
+/// What is found in each block of stresses.
+fn blocks_of(stress: &mut [Sym3], of_block: &(dyn Fn((usize, &mut [Sym3])) -> BlockSearch + Sync)) -> Vec<BlockSearch> {
+    stress.par_chunks_mut(BLOCK).enumerate().map(of_block).collect()
+}
+
+/// Whether something holds for a block of bounds and volumes.
+fn any_block(bounds: &[[f64; 2]], volume: &[f64], holds: &(dyn Fn(&[[f64; 2]], &[f64]) -> bool + Sync)) -> bool {
+    bounds.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(|(bounds, volume)| holds(bounds, volume))
+}
+
+/// Fills all blocks, whatever was found in others; whether one of them found something.
+fn fill_blocks(
+    reaching: &mut [bool],
+    virials: &[Sym3],
+    volume: &[f64],
+    fill: &(dyn Fn(&mut [bool], &[Sym3], &[f64]) -> bool + Sync),
+) -> bool {
+    let blocks = reaching.par_chunks_mut(BLOCK).zip(virials.par_chunks(BLOCK)).zip(volume.par_chunks(BLOCK));
+    blocks
+        .map(|((reaching, virials), volume)| fill(reaching, virials, volume))
+        .reduce(|| false, |one, other| one || other)
+}
+
+/// What is found in each block of so many.
+fn numbered_blocks(blocks: usize, of_block: &(dyn Fn(usize) -> BlockSearch + Sync)) -> Vec<BlockSearch> {
+    (0..blocks).into_par_iter().map(of_block).collect()
 }
 
 /// Rounding by which the sizes of a load that are known already may miss those that are found anew.
@@ -231,7 +259,7 @@ impl<C: LoadCriterion> LoadBatch for C {
             }
             found
         };
-        (0..range.len().div_ceil(BLOCK)).into_par_iter().map(block).collect()
+        numbered_blocks(range.len().div_ceil(BLOCK), &block)
     }
 
     fn loads_reach(&self, loads: &LoadLanes, radius: f64, limit: f64) -> bool {
