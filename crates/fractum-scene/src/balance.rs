@@ -78,9 +78,10 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
     if scene.clock.step == 0 {
         ledger.initial = ledger[EnergyKind::Kinetic] + ledger[EnergyKind::Elastic] + ledger[EnergyKind::Contact];
+        ledger.initial += ledger[EnergyKind::Interfaces];
         ledger.initial += ledger[EnergyKind::Damping]; // rigid shapes stop what meets them at once
         if !solid.initial_displacement.is_empty() {
-            ledger.in_situ = ledger[EnergyKind::Elastic];
+            ledger.in_situ = ledger[EnergyKind::Elastic] + ledger[EnergyKind::Interfaces];
         }
         // Less than this is no energy: bodies that wait for a rigid body move by what rounding leaves, and so does rock
         // under stress.
@@ -104,7 +105,8 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
         return Err(StepError::NotFinite { step, time, dt, limit, culprit: culprit(scene) });
     }
     // An unstable run keeps the discrete balance while it blows up: its energies grow with opposite signs.
-    let ratio = (scene.ledger[EnergyKind::Elastic] - scene.ledger.in_situ) / scene.ledger.scale;
+    let stored = scene.ledger[EnergyKind::Elastic] + scene.ledger[EnergyKind::Interfaces];
+    let ratio = (stored - scene.ledger.in_situ) / scene.ledger.scale;
     if ratio > UNSTABLE_RATIO {
         return Err(StepError::Unstable { step, time, ratio, dt, limit, culprit: culprit(scene) });
     }

@@ -90,6 +90,26 @@ pub enum SceneError {
         /// Equivalent stress over strength.
         ratio: f64,
     },
+    /// The in-situ stress is more than an interface bears.
+    #[error(
+        "interface \"{name}\": in the state of t = 0 it has a traction of {normal:.4e} Pa along its normal (tension positive) and {shear:.4e} Pa across it \
+         at ({x:.4e}, {y:.4e}, {z:.4e}) m, which is more than it bears; a run begins with sides that hold: raise its friction, cohesion or strength, turn or lower \
+         the stress, or cut holes in a later stage"
+    )]
+    InSituParts {
+        /// Name of the interface.
+        name: String,
+        /// Where [m].
+        x: f64,
+        /// Where [m].
+        y: f64,
+        /// Where [m].
+        z: f64,
+        /// Traction along the normal, tension positive [Pa].
+        normal: f64,
+        /// Traction across it [Pa].
+        shear: f64,
+    },
     /// The state of in-situ stress was not found.
     #[error("the equilibrium of t = 0 was not found: {reason}")]
     InSituUnsolved {

@@ -138,15 +138,21 @@ fn take_leave(scene: &mut Scene, leaves: &[bool], piece: &[u32], dt: f64) {
         removals.left.pieces += usize::from(piece[node] as usize == node);
         removals.left.push(node as u32);
     }
-    let in_interfaces = scene.optional.interfaces.lose(&scene.solid, &elements);
-    energy += in_interfaces;
-    scene.books.interfaces -= in_interfaces;
+    interfaces_lose_elements(scene, &elements);
     scene.removals.left.elements += elements.len();
     scene.books.left += energy;
     let_go(scene, leaves, &elements);
     if !elements.is_empty() && !scene.settings.time_step.element_bound {
         scene.frequencies.stable = scene.solid.stable_step();
     }
+}
+
+/// Gives up the interfaces beside elements that have left; their energy leaves with them.
+pub(crate) fn interfaces_lose_elements(scene: &mut Scene, elements: &[(usize, u32)]) {
+    let Scene { solid, optional, books, .. } = scene;
+    let lost = optional.interfaces.lose(solid, elements);
+    books.interfaces -= lost;
+    books.left += lost;
 }
 
 /// Has heat and contact do without nodes and elements that have left.

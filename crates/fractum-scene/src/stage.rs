@@ -5,7 +5,7 @@ use fractum_math::Vec3;
 
 use crate::conditions::Release;
 use crate::excavation::Excavation;
-use crate::leave::let_go;
+use crate::leave::{interfaces_lose_elements, let_go};
 use crate::scene::Scene;
 
 impl Scene {
@@ -93,6 +93,7 @@ fn excavate(scene: &mut Scene, excavation: &Excavation, dt: f64, bear: &[Vec3]) 
     gone.iter().for_each(|&node| removals.left.push(node));
     let mut leaves = vec![false; solid.reference.len()];
     gone.iter().for_each(|&node| leaves[node as usize] = true);
+    interfaces_lose_elements(scene, &elements);
     let_go(scene, &leaves, &elements);
     let left = forces(scene, dt);
     let missing = |node: &u32| (*node, bear[*node as usize] - left[*node as usize]);
@@ -125,7 +126,7 @@ fn install(scene: &mut Scene, bodies: &[usize]) {
     }
 }
 
-/// Forces on all nodes as they stand, of stress, loads and springs on facets [N].
+/// Forces on all nodes as they stand, of stress, loads, springs on facets and interfaces [N].
 ///
 /// - `dt`: as in [`excavate`]
 fn forces(scene: &mut Scene, dt: f64) -> Vec<Vec3> {
@@ -134,6 +135,7 @@ fn forces(scene: &mut Scene, dt: f64) -> Vec<Vec3> {
     solid.update_internal_forces(dt, false);
     scene.loads.add_forces(&mut solid, scene.clock.time, 0.0);
     scene.optional.surface_supports.push(&mut solid);
+    scene.optional.interfaces.add_forces_at_rest(&mut solid);
     solid.force
 }
 

@@ -17,6 +17,7 @@ mod gauges;
 mod heat;
 mod interfaces;
 mod interrupt;
+mod jointed;
 mod loose;
 mod material;
 mod meant;

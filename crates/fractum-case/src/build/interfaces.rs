@@ -155,8 +155,12 @@ pub(super) fn check(context: &mut Context<'_>) {
     if case.solver.subcycling.is_some() {
         context.error(&place, "with solver.subcycling", "one step for all elements; remove subcycling");
     }
-    if case.in_situ.is_some() {
-        context.error(&place, "with [in_situ]", "solids that begin without stress; load them in the run instead");
+    if case.in_situ.is_some() && case.flows.liquid.is_some() {
+        context.error(
+            &place,
+            "with [in_situ] and [liquid]",
+            "solids that begin without stress; load them in the run instead",
+        );
     }
     if case.flows.heat.is_some() {
         context.error(&place, "with [heat]", "solids without heat: none flows across interfaces");

@@ -8,6 +8,7 @@
 //! Jumps are small: corners stay opposite each other, and the frame of a face is that of its middle surface where bodies turn.
 
 mod growth;
+pub(crate) mod in_situ;
 mod inside;
 pub(crate) mod joints;
 pub(crate) mod motion;

@@ -91,10 +91,12 @@ impl Cluster {
             match stiffness {
                 Some(stiffness) => {
                     let interface = SpringInterface { law: *law, stiffness: *stiffness };
+                    let rubbed = Rubbed::of(point);
                     point.force = interface.load(point.local(jump), &mut point.state);
                     point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
                     if step.elapsed > 0.0 {
                         taken.half(point, jump, closing(law, &Some(*stiffness)));
+                        taken.rub(point, &rubbed);
                     }
                     point.jump = jump;
                 }
@@ -138,7 +140,7 @@ impl Cluster {
 /// Where the work of pressure goes as a point moves along its normal.
 #[derive(Clone, Copy)]
 pub(super) enum Closing {
-    /// It is stored.
+    /// It is stored, and friction is found by what slides, see [`Taken::rub`].
     Stored,
     /// Sides that meet lose it.
     Lost,
@@ -160,13 +162,32 @@ impl Taken {
         let way = jump - point.jump;
         let local = point.frame * way;
         let closed = -0.5 * point.area * point.force.contact * local.x;
+        let rubbed = 0.5 * point.area * point.force.friction.dot(&local);
         self.work += 0.5 * point.pull.dot(&way);
-        self.friction += 0.5 * point.area * point.force.friction.dot(&local);
         match closing {
             Closing::Stored => {}
-            Closing::Lost => self.impact += closed,
-            Closing::Slides => self.friction += closed,
+            Closing::Lost => (self.friction, self.impact) = (self.friction + rubbed, self.impact + closed),
+            Closing::Slides => self.friction += rubbed + closed,
         }
+    }
+
+    /// Adds what friction takes of a point with a stiffness, which gives way before it slides.
+    pub(super) fn rub(&mut self, point: &Point, before: &Rubbed) {
+        let now = Rubbed::of(point);
+        self.friction += 0.5 * point.area * (before.friction + now.friction).dot(&(now.slip - before.slip));
+    }
+}
+
+/// Friction of a point [Pa] and how far it has slid [m].
+pub(super) struct Rubbed {
+    friction: Vec3,
+    slip: Vec3,
+}
+
+impl Rubbed {
+    pub(super) fn of(point: &Point) -> Self {
+        let [first, second] = point.state.slip;
+        Rubbed { friction: point.force.friction, slip: Vec3::new(0.0, first, second) }
     }
 }
 

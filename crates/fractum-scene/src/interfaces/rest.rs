@@ -6,7 +6,7 @@ use fractum_math::{Mat3, Vec3};
 
 use super::inside::pressure_in;
 use super::joints::PointPlace;
-use super::motion::Closing;
+use super::motion::{Closing, Rubbed};
 use super::{InterfaceKind, Interfaces, Taken};
 
 /// A spring of an interface between two nodes.
@@ -83,9 +83,11 @@ impl Interfaces {
             let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
             let before = (taken.work - taken.friction, point.area * point.force.stored);
             taken.half(point, b - a, Closing::Stored);
+            let rubbed = Rubbed::of(point);
             point.force = interface.load(point.local(b - a), &mut point.state);
             point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
             taken.half(point, b - a, Closing::Stored);
+            taken.rub(point, &rubbed);
             if !law.is_bonded() {
                 surplus += taken.work - taken.friction - before.0 - (point.area * point.force.stored - before.1);
             }

@@ -1,12 +1,14 @@
 //! Equilibrium before motion: the state of rock under in-situ stress, from which a run begins.
 
-use fractum_math::Vec3;
+use fractum_math::{Mat3, Vec3};
 
+use super::contact::Spring;
 use super::linear_system::LinearSystem;
 use super::settings::LinearSolver;
 use super::support_check::pins;
 use crate::balance::IN_SITU_ROUND_OFF;
 use crate::error::SceneError;
+use crate::interfaces::in_situ::Overloaded;
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 
@@ -28,16 +30,21 @@ impl Scene {
     /// [`SceneError::InSituUnbalanced`], [`SceneError::InSituBreaks`] and [`SceneError::InSituUnsolved`].
     pub fn start_at_rest(&mut self) -> Result<(), SceneError> {
         let unsolved = |reason: String| SceneError::InSituUnsolved { reason };
-        let held = pins(&self.solid, self.supports.held());
-        let mut system = LinearSystem::new(&self.solid, &held, LinearSolver::Auto, 2, TOLERANCES[0], &[])
+        let firm = self.interfaces().firm_springs(&self.solid);
+        let joined: Vec<[u32; 2]> = firm.iter().map(|(pair, _)| *pair).collect();
+        let held = pins(&self.solid, self.supports.held(), &joined);
+        let mut system = LinearSystem::new(&self.solid, &held, LinearSolver::Auto, 2, TOLERANCES[0], &joined)
             .map_err(|error| unsolved(error.to_string()))?;
-        system.prepare(self, &self.solid.cell_damage(), &[]).map_err(|error| unsolved(error.to_string()))?;
+        let spring = |&(pair, stiffness): &([u32; 2], f64)| Spring::between(pair, Mat3::identity() * stiffness);
+        let springs: Vec<Spring> = firm.iter().map(spring).collect();
+        system.prepare(self, &self.solid.cell_damage(), &springs).map_err(|error| unsolved(error.to_string()))?;
         let mut change = vec![Vec3::zeros(); self.solid.reference.len()];
         for _ in 0..MOST_SOLUTIONS {
-            let (missing, scale) = forces_at_start(self, &held);
+            let (missing, scale) = forces_at_start(self, &held, &firm);
             if missing <= TOLERANCES[1] * scale {
                 check_pins(self, &held, scale)?;
                 self.solid.initial_displacement = self.solid.displacement.clone();
+                self.optional.interfaces.begin_under(&self.solid, &firm).map_err(overloaded)?;
                 book_in_situ(self);
                 return Ok(());
             }
@@ -51,17 +58,33 @@ impl Scene {
 
 /// Enters the energy that the stress has stored, from which a run at rest begins; one in motion finds it in its first step.
 fn book_in_situ(scene: &mut Scene) {
-    let Scene { solid, ledger, .. } = scene;
+    let Scene { solid, ledger, books, optional, .. } = scene;
     solid.update_internal_forces(0.0, true);
-    let stored = solid.elastic_energy();
-    ledger[EnergyKind::Elastic] = stored;
+    books.interfaces = optional.interfaces.stored();
+    ledger[EnergyKind::Elastic] = solid.elastic_energy();
+    ledger[EnergyKind::Interfaces] = books.interfaces;
+    let stored = ledger[EnergyKind::Elastic] + ledger[EnergyKind::Interfaces];
     (ledger.initial, ledger.in_situ, ledger.scale) = (stored, stored, IN_SITU_ROUND_OFF * stored);
 }
 
+/// Why an interface does not bear the state of the start.
+fn overloaded(Overloaded { name, place, traction: [normal, shear] }: Overloaded) -> SceneError {
+    let [x, y, z] = place.into();
+    SceneError::InSituParts { name, x, y, z, normal, shear }
+}
+
 /// Leaves all forces of t = 0 in `solid.force`; those that are missing on free unknowns, and all that act [N].
-fn forces_at_start(scene: &mut Scene, held: &[u8]) -> (f64, f64) {
+///
+/// - `firm`: springs that keep the sides of interfaces together
+fn forces_at_start(scene: &mut Scene, held: &[u8], firm: &[([u32; 2], f64)]) -> (f64, f64) {
     scene.solid.update_internal_forces(0.0, false);
     let inner = scene.solid.force.clone();
+    for &(pair, stiffness) in firm {
+        let [a, b] = pair.map(|node| node as usize);
+        let pull = (scene.solid.displacement[b] - scene.solid.displacement[a]) * stiffness;
+        scene.solid.force[a] += pull;
+        scene.solid.force[b] -= pull;
+    }
     scene.loads.add_forces(&mut scene.solid, 0.0, 0.0);
     let (mut missing, mut scale) = (0.0, 0.0);
     for ((force, inner), bits) in scene.solid.force.iter().zip(&inner).zip(held) {

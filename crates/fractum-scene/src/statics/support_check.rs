@@ -49,9 +49,10 @@ pub fn check_supports(
 /// The degrees of freedom that are prescribed, with as few more as keep every piece from moving as a rigid body.
 ///
 /// - `held`: bit a of a node is set where its axis a is prescribed; empty without supports
-pub(super) fn pins(solid: &Solid, held: &[u8]) -> Vec<u8> {
+/// - `links`: pairs of nodes of pieces that hold together
+pub(super) fn pins(solid: &Solid, held: &[u8], links: &[[u32; 2]]) -> Vec<u8> {
     let mut pinned = if held.is_empty() { vec![0; solid.reference.len()] } else { held.to_vec() };
-    for (_, nodes) in pieces(solid, &[]) {
+    for (_, nodes) in pieces(solid, links) {
         let mut piece = Piece::new(solid, &nodes, held);
         while let Some(motion) = piece.free_motion() {
             let of = |&node: &u32| {

@@ -1,0 +1,158 @@
+//! Jointed rock under in-situ stress.
+
+use fractum_math::Vec3;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
+use fractum_mesh::{Mesh, MshFormat};
+use serde_json::Value;
+
+use crate::common::{Workplace, mesh_bytes, resumed, run, summary};
+
+/// A square of 2 m under -1 and -3 MPa and a shear stress, without supports, with two joints that cross.
+const SQUARE: &str = r#"fractum = 1
+
+[parameters]
+angle = "40 deg"
+
+[mesh]
+file = "bar.msh"
+[[mesh.joints]]
+name = "joints"
+table = [["0.4 m", "0.5 m", "1.6 m", "1.2 m"], ["1.1 m", "0.3 m", "0.8 m", "1.7 m"]]
+
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "40 GPa"
+poisson_ratio = 0.25
+
+[[bodies]]
+name = "rock"
+kind = "solid"
+group = "body"
+material = "rock"
+
+[[interfaces]]
+name = "joints"
+group = "joints"
+bonded = false
+residual_friction_angle = "angle"
+
+[in_situ]
+stress = { xx = "-1 MPa", yy = "-3 MPa", xy = "0.2 MPa" }
+groups = ["x-", "x+", "y-", "y+"]
+
+[solver]
+end = "2 ms"
+
+[[probes]]
+name = "xx"
+stress = { where = "x < 100 m", component = "xx" }
+
+[output]
+fields = { every = "1 ms" }
+checkpoint = { every = "0.2 ms" }
+"#;
+
+fn square() -> Mesh {
+    structured_rectangle([20, 20], [2.0, 2.0], None)
+}
+
+fn place(text: &str, mesh: &Mesh) -> Workplace {
+    Workplace::with_mesh(text, &mesh_bytes(mesh, MshFormat::V4_1Binary))
+}
+
+fn energy(of: &Value, name: &str) -> f64 {
+    of["energy"][name].as_f64().unwrap_or(0.0)
+}
+
+/// Joints that are stiff or give way, open or healed, in the plane and in space.
+#[test]
+fn jointed_rock_under_stress_stays_at_rest_and_has_the_stress_that_was_asked_for() {
+    let compliant = ["angle\"\n", "angle\"\nnormal_stiffness = \"50 GPa/m\"\nshear_stiffness = \"20 GPa/m\"\n"];
+    let healed =
+        ["bonded = false", "tensile_strength = \"2 MPa\"\nfracture_energy = \"50 J/m^2\"\nfriction_angle = \"45 deg\""];
+    let space = SQUARE
+        .replace(
+            "[\"0.4 m\", \"0.5 m\", \"1.6 m\", \"1.2 m\"], [\"1.1 m\", \"0.3 m\", \"0.8 m\", \"1.7 m\"]",
+            "[\"1 m\", \"1 m\", \"1 m\", \"50 deg\", \"30 deg\", \"1.2 m\"]",
+        )
+        .replace("xy = \"0.2 MPa\"", "zz = \"-2 MPa\"")
+        .replace("\"y+\"]", "\"y+\", \"z-\", \"z+\"]");
+    let cube = structured_box([8, 8, 8], Vec3::repeat(2.0), None);
+    for (text, mesh) in [(SQUARE.to_owned(), square()), (space, cube)] {
+        for (gives_way, heals) in [(false, false), (true, false), (false, true), (true, true)] {
+            let mut text = text.clone();
+            for (wanted, [from, to]) in [(gives_way, compliant), (heals, healed)] {
+                text = if wanted { text.replace(from, to) } else { text };
+            }
+            for kind in ["explicit", "static"] {
+                let name = format!("gives way: {gives_way}, healed: {heals}, {kind}\n{text}");
+                let text = text.replace("[solver]", &format!("[solver]\nkind = \"{kind}\""));
+                let one = run(&place(&text, &mesh), "one", "1");
+                let stored = energy(&one, "elastic") + energy(&one, "interfaces");
+                assert!(energy(&one, "kinetic") < 1e-12 * stored, "{name} {}", one["energy"]);
+                assert_eq!(energy(&one, "interfaces") > 1e-6 * stored, gives_way, "{name} {}", one["energy"]);
+                for spent in ["friction", "interface_fracture", "external"] {
+                    assert!(energy(&one, spent).abs() < 1e-9 * stored, "{name} {}", one["energy"]);
+                }
+                let stress = one["probes"]["xx"]["final"].as_f64().unwrap();
+                assert!((stress / -1e6 - 1.0).abs() < 1e-3, "{name} {stress}");
+            }
+        }
+    }
+}
+
+/// A joint at 45 degrees to -1 and -3 MPa has a shear stress of half of its pressure: it holds from atan 0.5 = 26.57 degrees on.
+#[test]
+fn a_joint_that_cannot_bear_the_stress_is_refused_by_name() {
+    let text = SQUARE
+        .replace(", [\"1.1 m\", \"0.3 m\", \"0.8 m\", \"1.7 m\"]", "")
+        .replace("\"0.4 m\", \"0.5 m\", \"1.6 m\", \"1.2 m\"", "\"0.5 m\", \"0.5 m\", \"1.5 m\", \"1.5 m\"")
+        .replace(", xy = \"0.2 MPa\"", "");
+    let place = place(&text, &square());
+    for (angle, holds) in [("26.5 deg", false), ("26.6 deg", true)] {
+        let set = format!("angle={angle}");
+        let ended = place.fractum(&["run", "case.toml", "--quiet", "-o", "one", "--overwrite", "--set", &set]);
+        assert_eq!(ended.code == Some(0), holds, "{angle}: {}", ended.stderr);
+        if !holds {
+            assert!(
+                ended.stderr.contains("interface \"joints\"") && ended.stderr.contains("friction"),
+                "{}",
+                ended.stderr
+            );
+        }
+    }
+}
+
+#[test]
+fn jointed_rock_under_stress_has_the_same_bits_on_any_threads_and_after_a_resume() {
+    let moving =
+        SQUARE.replace("[solver]", "[[loads]]\ngroup = \"x+\"\npressure = \"0.3 MPa*sin(t/0.2 ms)\"\n[solver]");
+    let place = place(&moving, &square());
+    let one = run(&place, "one", "1");
+    assert!(energy(&one, "kinetic") > 0.0 && energy(&one, "residual_max_relative") < 1e-3, "{}", one["energy"]);
+    assert_eq!(one["state_hash"], run(&place, "two", "2")["state_hash"]);
+    assert_eq!(one["state_hash"], resumed(&place, "two")["state_hash"]);
+    assert_eq!(summary(&place, "two")["energy"], one["energy"]);
+}
+
+/// A flat joint 1.5 radii above the middle of a hole that is cut out of rock under an even stress p. The closed form of Lamé has a shear stress on it
+/// of p (a/r)² sin 2θ under a pressure of p (1 + (a/r)² cos 2θ): their largest ratio is that of 20.1 degrees.
+#[test]
+fn a_joint_above_a_hole_slides_from_the_friction_angle_of_the_elastic_stress_on() {
+    let text = include_str!("../../../cases/excavation/jointed.toml")
+        .replace("../../meshes/excavation-plane/hole.msh", "bar.msh");
+    let mesh = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/excavation-plane/hole.msh")).unwrap();
+    let place = Workplace::with_mesh(&text, &mesh);
+    for (angle, slides) in [("40 deg", false), ("21 deg", false), ("19 deg", true), ("15 deg", true)] {
+        let set = format!("angle={angle}");
+        let ended = place.fractum(&["run", "case.toml", "--quiet", "-o", "one", "--overwrite", "--set", &set]);
+        assert_eq!(ended.code, Some(0), "{angle}: {}", ended.stderr);
+        let one = summary(&place, "one");
+        assert_eq!(energy(&one, "friction") > 1e-7, slides, "{angle}: {}", one["energy"]);
+        assert!(
+            energy(&one, "interface_fracture").abs() < 1e-9 + 1e-3 * energy(&one, "friction"),
+            "{angle}: {}",
+            one["energy"]
+        );
+    }
+}
