@@ -328,4 +328,34 @@ mod tests {
         }
         assert!(count > 20, "{count} figures are marked");
     }
+
+    #[test]
+    fn pages_of_notebooks_have_their_cells() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        let mut count = 0;
+        for entry in fs::read_dir(root.join("python/examples")).unwrap() {
+            let notebook = entry.unwrap().path();
+            if notebook.extension().is_none_or(|extension| extension != "ipynb") {
+                continue;
+            }
+            count += 1;
+            let name = notebook.file_stem().unwrap().to_str().unwrap();
+            let page = fs::read_to_string(root.join("docs/notebooks").join(name).with_extension("md")).unwrap();
+            let cells: Value = serde_json::from_slice(&fs::read(&notebook).unwrap()).unwrap();
+            let mut rest = page.as_str();
+            for cell in cells["cells"].as_array().unwrap() {
+                let source: String =
+                    cell["source"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
+                let code = cell["cell_type"] == "code";
+                let part = if code { format!("```python\n{source}\n```\n") } else { format!("{source}\n") };
+                let Some((_, after)) = rest.split_once(&part) else {
+                    panic!(
+                        "docs/notebooks/{name}.md lacks a cell of the notebook; .ci/notebook-pages makes it anew:\n{source}"
+                    );
+                };
+                rest = after;
+            }
+        }
+        assert_eq!(count, 2);
+    }
 }

@@ -88,7 +88,8 @@ class Results:
         if not (self.folder / "summary.json").exists():
             return f"<Results {str(self.folder)!r}: no summary.json, the run has not ended>"
         peaks = [f"{name} up to {probe['max']:.4g} {probe['unit']}" for name, probe in self._measured()]
-        told = f"; {len(self.warnings)} warnings" if self.warnings else ""
+        count = len(self.warnings)
+        told = f"; {count} warning{'s' if count > 1 else ''}" if count else ""
         return f"<Results {str(self.folder)!r}: {self.summary['status']}; {', '.join(peaks) or 'no probes'}{told}>"
 
     def _repr_html_(self) -> str:

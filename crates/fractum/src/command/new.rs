@@ -17,6 +17,8 @@ struct Template {
     mesh: Option<fn() -> Mesh>,
     /// The geometry by which Gmsh makes such a mesh.
     geometry: &'static str,
+    /// The study of it; empty where a single run is meant.
+    study: &'static str,
 }
 
 /// A template from its folder below `templates`.
@@ -28,6 +30,13 @@ macro_rules! template {
             case: include_str!(concat!("../../templates/", $name, "/case.toml")),
             mesh: None,
             geometry: "",
+            study: "",
+        }
+    };
+    ($name:literal, $what:literal, $mesh:path, study) => {
+        Template {
+            study: include_str!(concat!("../../templates/", $name, "/study.toml")),
+            ..template!($name, $what, $mesh)
         }
     };
     ($name:literal, $what:literal, $mesh:path) => {
@@ -37,11 +46,12 @@ macro_rules! template {
             case: include_str!(concat!("../../templates/", $name, "/case.toml")),
             mesh: Some($mesh),
             geometry: include_str!(concat!("../../templates/", $name, "/part.geo")),
+            study: "",
         }
     };
 }
 
-const TEMPLATES: [Template; 10] = [
+const TEMPLATES: [Template; 15] = [
     template!("plate", "plate with two holes pulled apart at rest; triangles", meshes::plate),
     template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra", meshes::bracket),
     template!("brazilian", "disc of rock split between platens at rest; triangles", meshes::brazilian),
@@ -51,7 +61,20 @@ const TEMPLATES: [Template; 10] = [
     template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments", meshes::impact),
     template!("quench", "hot ceramic plate in cold water; triangles in motion, heat", meshes::quench),
     template!("shear", "rock joint sheared under pressure at rest; triangles, an interface", meshes::shear),
+    template!(
+        "tile",
+        "mortar tile on its edges, pressed by a stamp until it cracks; tetrahedra in motion",
+        meshes::tile
+    ),
+    template!(
+        "split-bar",
+        "rock between the bars of a Hopkinson test; triangles in motion, interfaces",
+        meshes::split_bar
+    ),
     template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion", meshes::blast),
+    template!("tunnel", "blast hole beside a tunnel in stressed rock; triangles in motion", meshes::tunnel),
+    template!("hopper", "loose grains that flow out of a hopper; particles, walls of facets", meshes::hopper),
+    template!("study", "brittle bar with random flaws, pulled apart with twelve seeds; a study", meshes::study, study),
 ];
 
 /// Lists the templates, or writes one into a folder.
@@ -79,6 +102,9 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
         write_msh(&make(), MshFormat::V4_1Ascii, &mut mesh).map_err(|error| Failure::input(error.to_string()))?;
         files.extend([("part.msh", mesh), ("part.geo", template.geometry.into())]);
     }
+    if !template.study.is_empty() {
+        files.push(("study.toml", template.study.into()));
+    }
     if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
         let path = folder.join(file);
         return Err(Failure::input(format!("{}: exists already; name another folder", path.display())));
@@ -88,6 +114,7 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
         atomic::write(&folder.join(file), &bytes)?;
     }
     say!("{}: {}", folder.display(), template.what);
-    say!("next: fractum run {}", fractum::for_shell(&folder.join("case.toml").display().to_string()));
+    let (command, file) = if template.study.is_empty() { ("run", "case.toml") } else { ("study", "study.toml") };
+    say!("next: fractum {command} {}", fractum::for_shell(&folder.join(file).display().to_string()));
     Ok(ExitCode::Done)
 }

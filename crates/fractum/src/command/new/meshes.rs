@@ -66,6 +66,54 @@ pub(super) fn blast() -> Mesh {
     fill(&[rock, hole([0.0, 0.0], 0.05, "hole")], "rock", &size, 1)
 }
 
+/// A round tunnel, and a blast hole beside it.
+pub(super) fn tunnel() -> Mesh {
+    let rock = rectangle([-20.0, -20.0], [20.0, 20.0], ["far"; 4]);
+    let size = |[x, y]: [f64; 2]| {
+        let from_tunnel = (x * x + y * y).sqrt() - 2.0;
+        let from_hole = ((x - 5.0) * (x - 5.0) + y * y).sqrt() - 0.1;
+        let around_hole = 0.02 + 0.0225 * from_hole.min(1.5) + 0.15 * (from_hole - 1.5).max(0.0);
+        (0.15 + 0.15 * from_tunnel).min(around_hole).min(1.5)
+    };
+    fill(&[rock, hole([0.0, 0.0], 2.0, "wall"), hole([5.0, 0.0], 0.1, "hole")], "rock", &size, 1)
+}
+
+pub(super) fn study() -> Mesh {
+    fill(&[rectangle([-50.0, -10.0], [50.0, 10.0], ["", "right", "", "left"])], "bar", &|_| 2.5, 1)
+}
+
+/// Two bars and a specimen between them, whose nodes are its own.
+pub(super) fn split_bar() -> Mesh {
+    let size = |[x, _]: [f64; 2]| graded(x.abs(), [0.7, 5.0], [12.0, 40.0]);
+    let specimen = fill(&[rectangle([-10.0, -8.0], [10.0, 8.0], [""; 4])], "specimen", &size, 1);
+    // The end of a bar has points where the specimen ends.
+    let bar = |from: f64, to: f64, end, name| {
+        let corners = [[to, -10.0], [to, -8.0], [to, 8.0], [to, 10.0], [from, 10.0]];
+        let mut pieces: Vec<Piece> = corners.into_iter().map(|to| Piece::line(to, "")).collect();
+        pieces.push(Piece::line([from, -10.0], end));
+        fill(&[Outline { start: [from, -10.0], pieces }], name, &size, 1)
+    };
+    let incident = bar(-510.0, -10.0, "struck", "incident");
+    let mut transmission = bar(-410.0, -10.0, "", "transmission");
+    // The other bar is a mirror of such a one.
+    transmission.nodes.iter_mut().for_each(|node| node.x = -node.x);
+    transmission.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+    side_by_side([incident, specimen, transmission])
+}
+
+/// A cone with a wall above it, without a lid.
+pub(super) fn hopper() -> Mesh {
+    let [outlet, radius, height] = [30.0, 80.0, 150.0];
+    let rim = Outline { start: [radius + height, 0.0], pieces: vec![Piece::arc([0.0; 2], 2.0 * PI, "")] };
+    let mut mesh = fill(&[rim, hole([0.0; 2], outlet, "")], "hopper", &|[x, y]| 0.3 * (x * x + y * y).sqrt(), 1);
+    for node in &mut mesh.nodes {
+        let along = (node.x * node.x + node.y * node.y).sqrt();
+        let share = along.min(radius) / along;
+        *node = Vec3::new(share * node.x, share * node.y, along - outlet);
+    }
+    mesh
+}
+
 pub(super) fn quench() -> Mesh {
     let strip = rectangle([0.0, 0.0], [6.0, 4.0], ["middle", "", "cooled", "left"]);
     fill(&[strip], "plate", &|_| 0.07, 1)
@@ -74,14 +122,21 @@ pub(super) fn quench() -> Mesh {
 /// Two halves with nodes of their own where they meet.
 pub(super) fn shear() -> Mesh {
     let half = |low: f64, sides, name| fill(&[rectangle([0.0, low], [100.0, low + 25.0], sides)], name, &|_| 4.0, 1);
-    let lower = half(0.0, ["bottom", "", "", ""], "lower");
-    let mut upper = half(25.0, ["", "", "top", ""], "upper");
-    let [nodes, elements] = [lower.nodes.len() as u64, (lower.lines.len() + lower.triangles.len()) as u64];
-    upper.node_tags.iter_mut().for_each(|tag| *tag += nodes);
-    upper.line_tags.iter_mut().chain(&mut upper.triangle_tags).for_each(|tag| *tag += elements);
-    let groups = lower.groups.len() as i32;
-    upper.groups.iter_mut().for_each(|group| group.tag += groups);
-    joined(&[lower, upper]).expect("the halves have numbers of their own")
+    side_by_side([half(0.0, ["bottom", "", "", ""], "lower"), half(25.0, ["", "", "top", ""], "upper")])
+}
+
+/// One mesh of plane bodies, with nodes of their own where they meet.
+fn side_by_side<const N: usize>(mut bodies: [Mesh; N]) -> Mesh {
+    let [mut nodes, mut elements, mut groups] = [0; 3];
+    for body in &mut bodies {
+        body.node_tags.iter_mut().for_each(|tag| *tag += nodes);
+        body.line_tags.iter_mut().chain(&mut body.triangle_tags).for_each(|tag| *tag += elements);
+        body.groups.iter_mut().for_each(|group| group.tag += groups as i32);
+        nodes += body.nodes.len() as u64;
+        elements += (body.lines.len() + body.triangles.len()) as u64;
+        groups += body.groups.len() as u64;
+    }
+    joined(&bodies).expect("the bodies have numbers of their own")
 }
 
 pub(super) fn bracket() -> Mesh {
@@ -119,6 +174,12 @@ pub(super) fn impact() -> Mesh {
     cells.nodes.iter_mut().for_each(|node| *node -= Vec3::new(100.0, 100.0, 0.0));
     let rim = ["x-", "x+", "y-", "y+"].map(|side| (side, "rim"));
     with_groups(&scrambled(&cells, 0.3, 1), "slab", &rim)
+}
+
+pub(super) fn tile() -> Mesh {
+    let mut cells = mirrored_cells([24, 24, 4], Vec3::new(200.0, 200.0, 30.0), |_| true);
+    cells.nodes.iter_mut().for_each(|node| *node -= Vec3::new(100.0, 100.0, 0.0));
+    with_groups(&scrambled(&cells, 0.3, 1), "tile", &[])
 }
 
 /// The mesh with other names: of all tetrahedra, and of some sides; the others have no triangles.
