@@ -10,9 +10,11 @@ use crate::atomic::Group;
 pub const NOTES: &str = "pictures/notes.json";
 
 /// Pictures of the last instant, in the folder `pictures` of the results.
-pub const PICTURES: [&str; 5] = [DAMAGE, STRESS, TEMPERATURE, PARTICLES, BROKEN_BONDS];
+pub const PICTURES: [&str; 6] = [DAMAGE, CLOSER, STRESS, TEMPERATURE, PARTICLES, BROKEN_BONDS];
 /// Damage of solids.
 pub const DAMAGE: &str = "damage.png";
+/// Cracks of solids that are small against them, closer.
+pub const CLOSER: &str = "cracks.png";
 /// First principal stress of solids.
 pub const STRESS: &str = "stress.png";
 /// Temperature.

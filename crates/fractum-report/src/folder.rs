@@ -63,8 +63,12 @@ fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Report
     let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|n| *n != values[0]));
     let cracks =
         ["removed_elements", "particles", "broken_bonds"].map(String::from).into_iter().filter(grows).collect();
+    let mut curves: Vec<Curve> = notes.plots.iter().map(|plot| own(plot, &history, &summary)).collect();
+    let load = load_curve(&history).filter(|load| !curves.iter().any(|own| is_load_curve(own, load, &history)));
+    curves.extend(load);
+    curves.extend(over_time(&history));
     let data = ReportData {
-        curves: notes.plots.iter().map(|plot| own(plot, &history, &summary)).chain(curves(&history)).collect(),
+        curves,
         energy: Some(EnergyColumns {
             external: EnergyKind::External.name().into(),
             parts: EnergyKind::ALL.into_iter().filter(|kind| kind.sign() < 0).map(|kind| kind.name().into()).collect(),
@@ -132,8 +136,9 @@ fn own(plot: &PlotNote, history: &Table, summary: &Summary) -> Curve {
         labels: plot.labels.clone(),
         logarithmic: plot.logarithmic,
         reference: plot.reference.clone(),
+        // As that of the load curve, whose place it takes.
+        mark_peak: y.len() == 1 && unit == "N" && plot.reference.is_none(),
         y,
-        ..Curve::default()
     }
 }
 
@@ -141,14 +146,20 @@ fn own(plot: &PlotNote, history: &Table, summary: &Summary) -> Curve {
 pub fn load_curve(history: &Table) -> Option<Curve> {
     let of_unit = |unit: &str| probes(history).iter().find(|c| c.unit == unit).map(|c| c.name.clone());
     let (load, displacement) = (of_unit("N")?, of_unit("m")?);
-    let title = format!("{load} against {displacement}");
+    let title = format!("{load} against {displacement}").replace('_', " ");
     Some(Curve { title, x: displacement, y: vec![load], mark_peak: true, ..Curve::default() })
 }
 
-/// The load curve, then the probes over time, one chart per unit.
-fn curves(history: &Table) -> Vec<Curve> {
+/// Whether a plot of the user's own has the load of the load curve against a length.
+fn is_load_curve(own: &Curve, load: &Curve, history: &Table) -> bool {
+    let of_length = history.column(&own.x).is_some_and(|(_, unit)| unit == "m");
+    of_length && own.y == load.y
+}
+
+/// The probes over time, one chart per unit.
+fn over_time(history: &Table) -> Vec<Curve> {
     let probes = probes(history);
-    let mut curves: Vec<Curve> = load_curve(history).into_iter().collect();
+    let mut curves: Vec<Curve> = Vec::new();
     let mut units: Vec<&str> = Vec::new();
     for column in probes {
         if !units.contains(&column.unit.as_str()) {
@@ -230,7 +241,7 @@ mod tests {
     fn titles_name_quantities() {
         let column = |name: &str, unit: &str| Column::new(name, unit);
         let table = |columns: Vec<Column>| Table { values: vec![vec![1.0, 2.0]; columns.len()], columns };
-        let titles = |table: Table| curves(&table).into_iter().map(|curve| curve.title).collect::<Vec<_>>();
+        let titles = |table: Table| over_time(&table).into_iter().map(|curve| curve.title).collect::<Vec<_>>();
         assert_eq!(titles(table(vec![column("top", "N"), column("base", "N")])), ["Forces"]);
         assert_eq!(titles(table(vec![column("tip_angle", "rad")])), ["tip angle"]);
         assert_eq!(titles(table(vec![column("a", "1"), column("b", "1")])), ["Numbers and ratios"]);

@@ -6,13 +6,19 @@ use fractum_fem::{fields, neighbours};
 use fractum_math::Vec3;
 use fractum_output::atomic::Group;
 use fractum_output::frames::cracks::lost_bonds;
-use fractum_output::frames::{Triangles, drawn_surfaces, extent};
-use fractum_output::notes::{BROKEN_BONDS, DAMAGE, PARTICLES, PictureNote, STRESS, TEMPERATURE};
+use fractum_output::frames::{Triangles, corners, drawn_surfaces, extent};
+use fractum_output::notes::{BROKEN_BONDS, CLOSER, DAMAGE, PARTICLES, PictureNote, STRESS, TEMPERATURE};
 use fractum_scene::{BondedBody, CountKind, Scene};
 use serde::{Deserialize, Serialize};
 
 use crate::picture::{ColourMap, View, robust_range};
-use crate::sight::{Balls, Colours, LOST_BONDS, Sight, magnification, magnified, shown_radius, view_of};
+use crate::sight::{Balls, Colours, LOST_BONDS, Sight, magnification, magnified, shown_radius, strain_of, view_of};
+
+/// Damage of an element that counts as cracked.
+const CRACKED: f64 = 0.5;
+
+/// Extent of all cracks over that of the bodies below which they have a picture of their own.
+const SMALL: f64 = 0.15;
 
 /// Shortest over next side of what is seen from its broad side.
 const FLAT: f64 = 0.35;
@@ -59,6 +65,7 @@ impl Skin {
 }
 
 /// What all pictures of a scene have in common.
+#[derive(Clone)]
 struct Studio<'a> {
     folder: &'a Path,
     sight: Sight,
@@ -79,6 +86,24 @@ struct Field<'a> {
 }
 
 impl Studio<'_> {
+    /// What cracks in solids are seen from, where they are small against the bodies.
+    ///
+    /// - `size`: of the bodies [m]
+    fn near(&self, skin: &Skin, size: f64) -> Option<View> {
+        let cracked = skin.facets.iter().zip(&skin.damage).filter(|(_, damage)| **damage >= CRACKED);
+        let points: Vec<Vec3> = cracked
+            .flat_map(|(facet, _)| facet.map(|node| Vec3::from(self.sight.skin.points[node as usize])))
+            .chain(self.sight.debris.centres.iter().map(|centre| Vec3::from(*centre)))
+            .collect();
+        let [low, high] = corners(points.iter());
+        let extent = (high - low).norm();
+        if points.is_empty() || extent > SMALL * size {
+            return None;
+        }
+        let around = Vec3::repeat(0.25 * extent + 0.02 * size);
+        Some(View { frame: Some(((low - around).into(), (high + around).into())), ..self.view })
+    }
+
     /// Draws a picture into its file; none where it cannot be drawn.
     fn draw(&self, files: &mut Group, file: &str, title: &str, field: Field) -> Option<PictureNote> {
         let Field { label, unit, facets, balls, damage } = field;
@@ -116,11 +141,16 @@ pub fn draw(scene: &Scene, skin: Skin, folder: &Path, instant: &str, files: &mut
     let moved: Vec<Vec3> =
         bonded.particles.position.iter().zip(bonded.reference()).map(|(x, start)| x - start).collect();
     let largest = of_nodes.chain(moved.iter().map(|u| u.norm())).fold(0.0, f64::max);
-    let scale = magnification(size.norm(), largest);
+    let Skin { facets, damage, stress } = &skin;
+    let strain = |facet: &[u32; 3]| {
+        let corners = facet.map(|node| solid.reference[node as usize]);
+        strain_of(corners, facet.map(|node| solid.displacement_from_start(node as usize)))
+    };
+    let strains = facets.iter().zip(damage).filter(|(_, damage)| **damage < CRACKED).map(|(facet, _)| strain(facet));
+    let scale = magnification(size.norm(), largest, strains.collect());
     let shown = |n: usize| -> [f64; 3] { (solid.reference[n] + solid.displacement_from_start(n) * scale).into() };
     let debris = scene.debris.state();
     let radius = |(&n, &attached): (&u32, &bool)| shown_radius(scene.debris.radius(n), attached);
-    let Skin { facets, damage, stress } = &skin;
     let points = (0..solid.reference.len()).map(shown).collect();
     let studio = Studio {
         folder,
@@ -144,6 +174,11 @@ pub fn draw(scene: &Scene, skin: Skin, folder: &Path, instant: &str, files: &mut
     if damage.iter().any(|&d| d > 0.0) {
         let field = Field { facets: damage, damage: true, ..none };
         notes.extend(studio.draw(files, DAMAGE, "Damage and discrete elements", field));
+        if let Some(view) = studio.near(&skin, size.norm()) {
+            let field = Field { facets: damage, damage: true, ..none };
+            let title = "The cracks of this picture, closer,";
+            notes.extend(Studio { view, ..studio.clone() }.draw(files, CLOSER, title, field));
+        }
     }
     // Heat alone leaves bodies as they are.
     let acts = |values: &[f64]| !values.is_empty() && (scene.heat().is_none() || values.iter().any(|&x| x != 0.0));

@@ -94,7 +94,7 @@ pub(crate) struct Frames {
     pub(crate) range: (f64, f64),
     /// How much larger displacements are drawn than they are.
     pub(crate) scale: f64,
-    view: View,
+    pub(crate) view: View,
 }
 
 fn refused(error: &ReadError) -> ReportError {
@@ -154,7 +154,7 @@ impl Frames {
                 Shown::BrokenBonds => (0.0, LOST_BONDS),
                 _ => crate::picture::range(&ranges),
             },
-            scale: magnification(size.norm(), largest),
+            scale: magnification(size.norm(), largest, Vec::new()),
             view: View { frame: Some(((low - room).into(), (high + room).into())), ..view_of(size) },
             index,
         })

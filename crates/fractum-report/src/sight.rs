@@ -9,6 +9,18 @@ use crate::picture::{ColourMap, Image, Paint, Picture, PictureError, Scale, Sphe
 /// The largest displacement in a picture, as a fraction of the size of the body.
 const SHOWN_DISPLACEMENT: f64 = 0.04;
 
+/// The largest change of length, or rotation, of facets in a picture: beyond it shapes are no longer those of the body.
+const SHOWN_STRAIN: f64 = 0.2;
+
+/// Share of the facets that keep within it: those at cracks open as far as they do.
+const WITHIN: f64 = 0.98;
+
+/// Width and largest height of the pictures of the report [pixels].
+pub(crate) const WIDTH: usize = 900;
+pub(crate) const HEIGHT: usize = 760;
+/// Their least height.
+const LEAST_HEIGHT: usize = 340;
+
 /// What a picture shows but does not colour.
 const GREY: [u8; 3] = [150, 150, 150];
 
@@ -104,8 +116,22 @@ pub(crate) fn shown_radius(radius: f64, attached: bool) -> f64 {
 ///
 /// - `size`: of the bodies [m]
 /// - `largest`: displacement [m]
-pub(crate) fn magnification(size: f64, largest: f64) -> f64 {
-    if largest > 0.0 { (SHOWN_DISPLACEMENT * size / largest).max(1.0) } else { 1.0 }
+/// - `strains`: those of facets, by [`strain_of`]; none where they are not known
+pub(crate) fn magnification(size: f64, largest: f64, mut strains: Vec<f64>) -> f64 {
+    if largest <= 0.0 {
+        return 1.0;
+    }
+    let wanted = SHOWN_DISPLACEMENT * size / largest;
+    strains.sort_by(f64::total_cmp);
+    let strain = strains.get((WITHIN * strains.len() as f64) as usize).copied().unwrap_or(0.0);
+    let most = if strain > 0.0 { SHOWN_STRAIN / strain } else { f64::INFINITY };
+    wanted.min(most).max(1.0)
+}
+
+/// How far the corners of a facet have moved against each other over its longest side.
+pub(crate) fn strain_of(corners: [Vec3; 3], moved: [Vec3; 3]) -> f64 {
+    let longest = |of: [Vec3; 3]| [0, 1, 2].map(|i| (of[(i + 1) % 3] - of[i]).norm()).into_iter().fold(0.0, f64::max);
+    longest(moved) / longest(corners)
 }
 
 /// The magnification in words, after the instant.
@@ -124,5 +150,28 @@ pub(crate) fn view_of(size: Vec3) -> View {
     } else {
         View::default()
     };
-    View { width: 900, height: 760, ..camera }
+    View { width: WIDTH, height: height_of(size), ..camera }
+}
+
+/// Height of a picture: plane bodies that are long along x need less, with room for the scale below them [pixels].
+fn height_of(size: Vec3) -> usize {
+    let drawn = WIDTH as f64 * size.y / size.x + 150.0;
+    if size.z == 0.0 && drawn.is_finite() { (drawn as usize).clamp(LEAST_HEIGHT, HEIGHT) } else { HEIGHT }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn magnification_is_bounded_by_displacements_and_strains() {
+        assert_eq!(magnification(1.0, 1e-3, Vec::new()), 40.0);
+        assert_eq!(magnification(1.0, 1e-3, vec![1e-4; 100]), 40.0);
+        assert_eq!(magnification(1.0, 1e-3, vec![2e-2; 100]), 10.0);
+        // One facet at a crack does not count, and nothing is made smaller.
+        let mut cracked = vec![1e-4; 100];
+        cracked[7] = 1.0;
+        assert_eq!(magnification(1.0, 1e-3, cracked), 40.0);
+        assert_eq!(magnification(1.0, 0.5, vec![1.0; 9]), 1.0);
+    }
 }

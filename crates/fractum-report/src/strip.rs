@@ -7,9 +7,9 @@ use fractum_output::notes::{PictureNote, STRIP_FILE};
 
 use crate::movie::{FrameIndex, Frames};
 use crate::picture::ColourMap;
-use crate::sight::magnified;
+use crate::sight::{HEIGHT, magnified};
 
-/// Width and height of the pictures of the strip [pixels].
+/// Width and largest height of the pictures of the strip [pixels].
 const STRIP: [usize; 2] = [368, 312];
 /// Pictures of the strip, with that at the peak.
 const IN_STRIP: usize = 5;
@@ -41,9 +41,10 @@ pub fn strip(
     wanted.dedup();
     let Ok(frames) = Frames::survey(index, &wanted) else { return Vec::new() };
     let (label, unit) = frames.label();
+    let size = [STRIP[0], STRIP[1] * frames.view.height / HEIGHT];
     let note = |instant: usize| {
         let file = format!("{STRIP_FILE}{instant:05}.png");
-        let image = frames.draw(instant, 1.0, STRIP[0], STRIP[1]).ok()?;
+        let image = frames.draw(instant, 1.0, size[0], size[1]).ok()?;
         files.add(&folder.join("pictures").join(&file), &image.to_png().ok()?);
         let peak = if Some(instant) == at_peak { " (nearest to the peak)" } else { "" };
         Some(PictureNote {
@@ -54,7 +55,7 @@ pub fn strip(
             unit: unit.to_owned(),
             damage: frames.map() == ColourMap::Damage,
             range: frames.range,
-            size: STRIP,
+            size,
             in_strip: true,
             ..PictureNote::default()
         })

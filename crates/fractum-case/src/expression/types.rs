@@ -28,6 +28,14 @@ impl Type {
     /// A number without unit.
     pub(crate) const BARE: Self = Type::Number { dimension: Dimension::NONE, bare: true, loose: true };
 
+    /// SI unit; `1` for a condition.
+    pub(crate) fn symbol(self) -> String {
+        match self {
+            Type::Truth => Dimension::NONE.symbol(),
+            Type::Number { dimension, .. } => dimension.symbol(),
+        }
+    }
+
     /// `a length`, `a condition`.
     pub(crate) fn phrase(self) -> String {
         match self {

@@ -115,8 +115,8 @@ pub struct CaseSource {
     pub overrides: Vec<(String, String)>,
     /// Files that it reads besides the mesh, as written there, with their contents.
     pub tables: Vec<(String, Vec<u8>)>,
-    /// Values of `[parameters]` in SI, after overrides.
-    pub parameters: BTreeMap<String, f64>,
+    /// Values of `[parameters]` in SI, after overrides, with their units.
+    pub parameters: BTreeMap<String, (f64, String)>,
     /// Name of the stage that the case is; empty where there is one only.
     pub stage: String,
     /// How `fractum verify` takes this case.

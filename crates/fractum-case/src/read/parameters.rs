@@ -19,7 +19,7 @@ pub(super) fn declared(root: &Node) -> Vec<String> {
 }
 
 /// Reads the parameters in the order of the file, so that one may use those above it.
-pub(super) fn read(root: &Table<'_>) -> BTreeMap<String, f64> {
+pub(super) fn read(root: &Table<'_>) -> BTreeMap<String, (f64, String)> {
     let reader = root.reader;
     let Some(table) = root.table("parameters") else { return BTreeMap::new() };
     for entry in table.entries() {
@@ -33,7 +33,8 @@ pub(super) fn read(root: &Table<'_>) -> BTreeMap<String, f64> {
         }
     }
     table.finish("here");
-    reader.parameters.borrow().iter().map(|(name, parameter)| (name.clone(), parameter.value)).collect()
+    let parameters = reader.parameters.borrow();
+    parameters.iter().map(|(name, Parameter { value, kind, .. })| (name.clone(), (*value, kind.symbol()))).collect()
 }
 
 /// Notes a name that an expression could not use.

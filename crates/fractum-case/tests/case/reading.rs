@@ -24,7 +24,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(mesh.file.value, folder().join("meshes/block.msh"));
     assert_eq!(mesh.unit, 1e-3);
     assert_eq!(mesh.files(), ["meshes/block_1.msh", "meshes/block_2.msh"].map(|file| folder().join(file)));
-    assert_eq!(case.source.parameters["E1"], 42e9);
+    assert_eq!(case.source.parameters["E1"], (42e9, "Pa".to_owned()));
 
     let [concrete, mortar, cement, grout, ..] = &case.materials[..] else { panic!() };
     assert_eq!((concrete.density, concrete.young_modulus, concrete.poisson_ratio), (2400.0, 21e9, 0.2));

@@ -90,14 +90,30 @@ fn peak(x: &[f64], y: &[f64], unit: &str) -> Option<Mark> {
     Some(Mark { label: quantity(y, unit), x, y })
 }
 
+/// Elastic energy in the first row [J], of bodies that are under stress before the run.
+pub(super) fn elastic_at_start(history: &Table) -> f64 {
+    let values = history.column(EnergyKind::Elastic.name()).map_or(&[][..], |(values, _)| values);
+    values.first().copied().filter(|value| *value > 0.0).unwrap_or(0.0)
+}
+
 /// The energy ledger over time: what the work went into, on top of each other, and the work as a line above. Where a
 /// part is negative, lines. None where there is no energy, as in heat alone.
 pub(super) fn energy(history: &Table, columns: &EnergyColumns) -> Option<Chart> {
     let (x, times) = time(history)?;
     let (work, unit) = history.column(&columns.external)?;
     let mut parts: Vec<(String, &[f64])> = Vec::new();
+    // What stress before the run has stored would hide all that follows.
+    let stored = elastic_at_start(history);
+    let elastic = EnergyKind::Elastic.name();
+    let column = history.column(elastic).map_or(&[][..], |(values, _)| values);
+    let since: Vec<f64> = column.iter().map(|value| value - stored).collect();
+    let title = if stored > 0.0 {
+        format!("Energy, without {} that was stored at the start", quantity(stored, unit))
+    } else {
+        "Energy".to_owned()
+    };
     for name in &columns.parts {
-        let values = history.column(name)?.0;
+        let values = if name == elastic { &since } else { history.column(name)?.0 };
         // What never was there does not fill the legend.
         if values.iter().any(|&value| value != 0.0) {
             parts.push((words(name), values));
@@ -108,7 +124,7 @@ pub(super) fn energy(history: &Table, columns: &EnergyColumns) -> Option<Chart> 
     }
     let largest = parts.iter().flat_map(|(_, values)| *values).fold(0.0, |a: f64, &b| a.max(b.abs()));
     let negative = parts.iter().flat_map(|(_, values)| *values).any(|&value| value < -0.01 * largest);
-    let mut chart = Chart { title: "Energy".into(), x, y: Axis::new("energy", unit).from_zero(), ..Chart::default() };
+    let mut chart = Chart { title, x, y: Axis::new("energy", unit).from_zero(), ..Chart::default() };
     chart.series = if negative {
         parts.iter().map(|(name, values)| Series::new(name, times.clone(), values.to_vec(), Style::Line)).collect()
     } else {
@@ -249,6 +265,18 @@ mod tests {
                 vec![0.0; 3],
             ],
         }
+    }
+
+    #[test]
+    fn energy_that_was_stored_at_the_start_is_told_apart() {
+        let mut history = history();
+        history.columns[2].name = "external".into();
+        history.values[3] = vec![1e6, 1e6 + 1.5, 1e6 + 1.0];
+        let columns = EnergyColumns { external: "external".into(), parts: vec!["elastic".into(), "damage".into()] };
+        let chart = energy(&history, &columns).unwrap();
+        assert_eq!(chart.title, "Energy, without 1 MJ that was stored at the start");
+        let top = chart.series.iter().flat_map(|series| &series.y).fold(0.0, |a: f64, &b| a.max(b));
+        assert!(top <= 3.0, "{top}");
     }
 
     #[test]

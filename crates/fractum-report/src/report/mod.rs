@@ -145,7 +145,7 @@ pub fn to_html(data: &ReportData) -> String {
                 (modes::vibrations(summary))
                 (probes(summary))
                 (fragments(&data.fragments))
-                (energies(summary))
+                (energies(summary, &data.history))
                 (wall(summary))
                 (inputs(&data.inputs))
                 @if !data.plan.is_empty() { section { h2 { "Plan" } pre { (data.plan.trim_end()) } } }
@@ -341,9 +341,10 @@ fn fragments(fragments: &[Fragment]) -> Markup {
     }
 }
 
-fn energies(summary: &Summary) -> Markup {
+fn energies(summary: &Summary, history: &Table) -> Markup {
     let energy = &summary.energy;
     let counts = &summary.counts;
+    let stored = charts::elastic_at_start(history);
     // The work of the loads stands even when it is zero; other zeros are what is not part of the run.
     let ledger = EnergyKind::ALL.map(|kind| (kind, energy.entries[kind as usize]));
     let largest = ledger.iter().map(|(_, value)| value.abs()).fold(0.0, f64::max);
@@ -367,6 +368,9 @@ fn energies(summary: &Summary) -> Markup {
                 table {
                     @for (kind, value) in ledger {
                         tr { td { (kind.label()) } td.number { (quantity(*value, "J")) } }
+                        @if *kind == EnergyKind::Elastic && stored > 0.0 {
+                            tr { td { "Elastic: stored at the start" } td.number { (quantity(stored, "J")) } }
+                        }
                     }
                     tr { td { "Largest imbalance" } td.number { (percent(energy.residual_max_relative)) " of the work" } }
                 }
@@ -392,7 +396,7 @@ fn wall(summary: &Summary) -> Markup {
     let Wall { total, phases } = &summary.wall;
     let measured: f64 = phases.values().sum();
     let mut phases: Vec<(&str, f64)> = phases.iter().map(|(name, &seconds)| (name.as_str(), seconds)).collect();
-    phases.push(("other", total - measured));
+    phases.push(("setting up and other", total - measured));
     // Slowest first; what takes no time to speak of is left out.
     phases.retain(|(_, seconds)| *seconds > 1e-3 * measured);
     phases.sort_by(|a, b| b.1.total_cmp(&a.1));

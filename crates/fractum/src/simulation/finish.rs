@@ -10,7 +10,7 @@ use fractum_output::attenuation;
 use fractum_output::fragments::{self, Fragment};
 use fractum_output::frames::cracks::{self, Columns, FacetHistory};
 use fractum_output::notes::{self, Notes, PictureNote};
-use fractum_output::number::{at_instant, instant_text, mode_text, quantity, significant};
+use fractum_output::number::{at_instant, instant_text, mode_text, quantity};
 use fractum_output::summary::{Breakage, Hashes, Status, Summary, hash_text};
 use fractum_scene::statics::{modes_of, show_mode};
 use fractum_scene::{Scene, fragment_size, ranks};
@@ -250,8 +250,8 @@ fn fragments_of(solid: &Solid, pieces: &[fractum_scene::Fragment]) -> Vec<Fragme
 fn inputs_of(case: &Case) -> Vec<(String, String)> {
     let mut lines: Vec<(String, String)> =
         case.materials.iter().map(|material| (material.name.value.clone(), of_material(material))).collect();
-    for (name, value) in &case.source.parameters {
-        lines.push((format!("parameter {name}"), format!("{} in SI units", significant(*value, 6))));
+    for (name, (value, unit)) in &case.source.parameters {
+        lines.push((format!("parameter {name}"), quantity(*value, unit)));
     }
     for (name, value) in &case.source.overrides {
         lines.push((format!("--set {name}"), value.clone()));
