@@ -4,7 +4,7 @@
 //! comes back with what it is about, and gets its place here.
 
 use fractum_mesh::Mesh;
-use fractum_pack::{Domain, read_stl};
+use fractum_pack::{ClosedSurface, Domain, PackError, SurfaceData, read_stl_facets};
 use fractum_prepare::{
     At, BondedReport, BondedRequest, BondedSubstance, Cache, Fault, LooseFill, LooseRequest, PackingRequest,
     PreparedBody, Shape, prepare_bonded, prepare_loose,
@@ -184,20 +184,25 @@ fn placed(place: &Place, value: String, fault: &Fault) -> Diagnostic {
     Diagnostic::error(place, found).expected(fault.expected).remedy(fault.remedy)
 }
 
-/// The facets of the rigid bodies that come from STL files, in the order of the case.
+/// The facets of the rigid bodies that come from STL files, in the order of the case: those of a closed surface look outward, those
+/// of an open one as the file has them.
 ///
 /// # Errors
-/// Files that hold no closed surface.
+/// Files that hold no surface.
 pub fn facets(case: &Case) -> Result<Vec<PreparedFacets>, Diagnostics> {
     let (mut all, mut errors) = (Vec::new(), Vec::new());
     for body in &case.bodies {
         let BodyKind::Rigid(rigid) = &body.kind else { continue };
         let RigidShape::Stl { file, unit, .. } = &rigid.shape else { continue };
-        match read_stl(&file.bytes, *unit) {
-            Ok(surface) => {
-                let data = surface.data();
-                let points = data.points.iter().map(|&p| p.into()).collect();
-                all.push(PreparedFacets { points, triangles: data.triangles });
+        let facets = read_stl_facets(&file.bytes, *unit).and_then(|data| match ClosedSurface::from_data(&data) {
+            Ok(surface) => Ok(surface.data()),
+            Err(PackError::OpenSurface { .. }) => Ok(data),
+            Err(error) => Err(error),
+        });
+        match facets {
+            Ok(SurfaceData { points, triangles }) => {
+                let points = points.into_iter().map(Into::into).collect();
+                all.push(PreparedFacets { points, triangles });
             }
             Err(error) => {
                 errors.push(Diagnostic::error(&file.name.place, format!("= \"{}\": {error}", file.name.value)));

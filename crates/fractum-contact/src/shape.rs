@@ -26,6 +26,13 @@ pub enum Shape {
         /// Radius [m].
         radius: f64,
     },
+    /// The wall of a cylinder along z, without thickness and without lids; felt from both sides.
+    Tube {
+        /// Radius [m].
+        radius: f64,
+        /// Half of its length [m].
+        half_length: f64,
+    },
 }
 
 impl Shape {
@@ -33,10 +40,11 @@ impl Shape {
     ///
     /// - `centre` [m] in the axes of the shape, `radius` [m]
     ///
-    /// From outside there is one contact at most, since the shapes are convex; from inside, one with each wall.
+    /// From outside there is one contact at most, since the shapes are convex; from inside, one with each wall. A tube has one, on
+    /// either side and on its rims alike: it counts as flat, so that a sphere keeps its energy from one side over the rim to the other.
     pub fn feet(&self, hollow: bool, centre: &Vec3, radius: f64, feet: &mut Vec<Foot>) {
         feet.clear();
-        if !hollow {
+        if !hollow || matches!(self, Shape::Tube { .. }) {
             let Outside { normal, distance, curvature } = self.outside(centre);
             if distance < radius {
                 feet.push(foot(0, normal, distance, curvature));
@@ -67,6 +75,7 @@ impl Shape {
                 let (away, from) = direction(*centre, Vec3::z());
                 add(0, away, wide - from, -1.0 / wide);
             }
+            Shape::Tube { .. } => {}
         }
     }
 
@@ -101,6 +110,13 @@ impl Shape {
             Shape::Ball { radius: wide } => {
                 let (away, from) = direction(*centre, Vec3::z());
                 found(-away, from - wide, 1.0 / wide)
+            }
+            Shape::Tube { radius: wide, half_length } => {
+                let (away, rho) = direction(Vec3::new(centre.x, centre.y, 0.0), Vec3::x());
+                let beyond = centre.z - centre.z.clamp(-half_length, half_length);
+                let to_wall = away * (wide - rho) - Vec3::z() * beyond;
+                let (normal, distance) = direction(to_wall, -away);
+                found(normal, distance, 0.0)
             }
         }
     }
@@ -144,16 +160,33 @@ mod tests {
         assert!(feet.iter().all(|f| (f.distance - 0.05).abs() < 1e-12));
     }
 
+    #[test]
+    fn a_tube_is_felt_on_both_sides_and_its_rims() {
+        let tube = Shape::Tube { radius: 1.0, half_length: 1.0 };
+        let mut feet = Vec::new();
+        let places =
+            [([0.9, 0.0, 0.3], 0.1), ([0.0, -1.2, 0.3], 0.2), ([1.0, 0.0, 1.25], 0.25), ([1.3, 0.0, -1.4], 0.5)];
+        for (place, distance) in places {
+            tube.feet(true, &Vec3::from(place), 0.6, &mut feet);
+            assert_eq!(feet.len(), 1);
+            assert!((feet[0].distance - distance).abs() < 1e-12, "{place:?}: {}", feet[0].distance);
+        }
+        // No lids.
+        tube.feet(true, &Vec3::new(0.0, 0.0, 1.0), 0.6, &mut feet);
+        assert!(feet.is_empty());
+    }
+
     proptest! {
         #[test]
         fn the_distance_falls_along_the_normal_one_to_one(
-            x in prop::array::uniform3(-2f64..2.0), kind in 0usize..4, hollow in proptest::bool::ANY,
+            x in prop::array::uniform3(-2f64..2.0), kind in 0usize..5, hollow in proptest::bool::ANY,
         ) {
             let shape = [
                 Shape::HalfSpace,
                 Shape::Cuboid { half: Vec3::new(1.0, 0.7, 0.5) },
                 Shape::Cylinder { radius: 0.8, half_length: 0.6 },
                 Shape::Ball { radius: 0.9 },
+                Shape::Tube { radius: 0.8, half_length: 0.6 },
             ][kind];
             let (mut feet, mut moved) = (Vec::new(), Vec::new());
             let x = Vec3::from(x);

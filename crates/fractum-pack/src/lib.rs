@@ -46,5 +46,5 @@ pub use isotropy::Isotropy;
 pub use network::{BondNetwork, Convention, bond};
 pub use packing::{Compaction, Packing};
 pub use regular::{Arrangement, regular};
-pub use stl::read_stl;
+pub use stl::{read_stl, read_stl_facets};
 pub use surface::{ClosedSurface, SurfaceData};

@@ -2,16 +2,26 @@ use std::collections::BTreeMap;
 
 use fractum_math::Vec3;
 
-use crate::{ClosedSurface, PackError};
+use crate::{ClosedSurface, PackError, SurfaceData};
 
-/// Reads an STL file, binary or ASCII, as a closed surface; vertices with equal coordinates are merged.
+/// Reads an STL file, binary or ASCII, as a closed surface.
+///
+/// # Errors
+/// Those of [`read_stl_facets`] and of [`ClosedSurface::new`].
+pub fn read_stl(bytes: &[u8], scale: f64) -> Result<ClosedSurface, PackError> {
+    let SurfaceData { points, triangles } = read_stl_facets(bytes, scale)?;
+    let points: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
+    ClosedSurface::new(&points, &triangles)
+}
+
+/// Reads the triangles of an STL file, binary or ASCII; vertices with equal coordinates are merged.
 ///
 /// - `bytes`: the whole file
 /// - `scale`: metres per file unit (STL has none)
 ///
 /// # Errors
-/// [`PackError::Stl`] with the offset or line for a malformed file, and those of [`ClosedSurface::new`].
-pub fn read_stl(bytes: &[u8], scale: f64) -> Result<ClosedSurface, PackError> {
+/// [`PackError::Stl`] with the offset or line for a malformed file.
+pub fn read_stl_facets(bytes: &[u8], scale: f64) -> Result<SurfaceData, PackError> {
     if !(scale.is_finite() && scale > 0.0) {
         return Err(PackError::Stl(format!("scale {scale}; expected a positive number of metres per unit")));
     }
@@ -25,7 +35,7 @@ pub fn read_stl(bytes: &[u8], scale: f64) -> Result<ClosedSurface, PackError> {
             // Adding zero makes -0 and +0 the same vertex.
             let key = c.map(|v| (v + 0.0).to_bits());
             *id = *ids.entry(key).or_insert_with(|| {
-                points.push(Vec3::from(c) * scale);
+                points.push(c.map(|v| v * scale));
                 points.len() as u32 - 1
             });
         }
@@ -36,7 +46,7 @@ pub fn read_stl(bytes: &[u8], scale: f64) -> Result<ClosedSurface, PackError> {
     if triangles.is_empty() {
         return Err(PackError::Stl("no triangles".into()));
     }
-    ClosedSurface::new(&points, &triangles)
+    Ok(SurfaceData { points, triangles })
 }
 
 /// A binary file states its own length; "solid" at the start proves nothing, as many binary writers put it there.

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 
 /// Advances nodes, particles and rigid bodies with the forces of tⁿ; prescribed motion takes the place of free motion.
 pub(crate) fn advance(scene: &mut Scene, measure: bool, passed: &mut impl FnMut(Phase)) -> HalfSteps {
-    let (time, dt_before, dt_after) = (scene.clock.time, scene.clock.dt_before, scene.clock.dt_after);
+    let (dt_before, dt_after) = (scene.clock.dt_before, scene.clock.dt_after);
     let mut work = if scene.solid.is_subcycled() {
         passed(Phase::Motion);
         let work = advance_in_parts(scene, measure);
@@ -21,7 +21,7 @@ pub(crate) fn advance(scene: &mut Scene, measure: bool, passed: &mut impl FnMut(
     };
     work += scene.debris.turn(&scene.solid, dt_before, dt_after, measure);
     work += move_bonded(scene, measure);
-    work += scene.contacts.move_bodies(time, dt_before, dt_after);
+    work += scene.contacts.move_bodies(&scene.clock);
     work.after.external += 0.5 * dt_after * scene.loads.power(&scene.solid);
     scene.loads.spend_gas_work(&scene.solid, dt_after);
     book_late_damping(scene, &work);

@@ -40,6 +40,7 @@ mod study;
 mod terminal;
 mod tied;
 mod told;
+mod tools;
 mod vtk_frames;
 mod warnings;
 mod wrong_input;

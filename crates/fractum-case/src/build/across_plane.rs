@@ -104,6 +104,7 @@ fn beside_plane(shape: &RigidShape, plane: f64) -> Option<(String, String)> {
             )
         }),
         RigidShape::Box { point, size } => spans(point.z, point.z + size.z),
+        RigidShape::Cylinder { open: true, .. } => None,
         RigidShape::Cylinder { point, axis, length, .. } if axis.z.abs() > 1.0 - NEARLY => {
             let end = point.z + axis.z * length;
             spans(point.z.min(end), point.z.max(end))
@@ -113,7 +114,7 @@ fn beside_plane(shape: &RigidShape, plane: f64) -> Option<(String, String)> {
             "axis = \"z\", or an axis along x and y".to_owned(),
         )),
         RigidShape::Cylinder { point, radius, .. } | RigidShape::Sphere { point, radius } => centred(point.z, *radius),
-        // Facets touch no 2D solids.
+        // Walls touch no 2D solids.
         RigidShape::Group { .. } | RigidShape::Stl { .. } => None,
     }
 }

@@ -161,10 +161,10 @@ fn check_rigid(context: &mut Context<'_>, body: &Body, rigid: &RigidBody) {
     let (is_round, expected) = match &rigid.shape {
         RigidShape::Plane { normal, .. } => (normal.z == 0.0, "a normal within the section, [x, y, 0]"),
         RigidShape::Sphere { point, .. } => (is_on_axis(point), "its centre on the y axis"),
-        RigidShape::Cylinder { point, axis, .. } => {
+        RigidShape::Cylinder { point, axis, open: false, .. } => {
             (is_on_axis(point) && axis.x == 0.0 && axis.z == 0.0, "axis = \"y\" and its point on the y axis")
         }
-        RigidShape::Box { .. } | RigidShape::Group { .. } | RigidShape::Stl { .. } => {
+        RigidShape::Box { .. } | RigidShape::Cylinder { .. } | RigidShape::Group { .. } | RigidShape::Stl { .. } => {
             (false, "a plane, which is turned to a cone where it is not level, a cylinder or a sphere")
         }
     };

@@ -12,7 +12,7 @@ use fractum_scene::{
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
-use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape, ServoForce};
+use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape, ServoForce, SolverKind};
 use crate::{Diagnostic, Spanned};
 
 /// Depth of an overlap over the radius of the particle at the start that is reported.
@@ -97,11 +97,43 @@ pub(super) fn with_contacts(
         _ => None,
     });
     let told: Vec<&str> = told.collect();
+    warnings.extend(wall_doubts(context, &scene));
     warnings.extend(context.tool_overlaps(&scene.solid, &scene.bonded, scene.contacts.rigid_bodies(), &told));
     if context.case.solver.initial_overlap == InitialOverlap::Keep {
         scene.accept_initial_overlaps();
     }
     Some(scene)
+}
+
+/// Walls that nodes of solids pass through.
+fn wall_doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
+    let mut stages = std::iter::once(context.case).chain(&context.case.later);
+    let moves = stages.any(|stage| stage.solver.kind == SolverKind::Explicit);
+    if scene.solid.body_count() == 0 || scene.solid.is_plane() || !moves {
+        return Vec::new();
+    }
+    let doubt = |tool: &RigidBody| {
+        let name = &context.case.bodies.iter().find(|body| body.name.value == tool.name)?.name;
+        let (found, remedy) = match &tool.form {
+            Form::Shape { shape: Shape::Tube { .. }, .. } => (
+                "solids pass through it: only particles and discrete elements feel a cylinder without lids".to_owned(),
+                "give the wall as facets (group or stl), or keep solids away from it",
+            ),
+            Form::Mesh { mesh, points } => {
+                let (edge, count) = mesh.turned_over()?;
+                let at = tool.frame.origin + tool.frame.to_space(&points[mesh.edge(edge)[0] as usize]);
+                let at = [at.x, at.y, at.z].map(|x| quantity(x, "m")).join(", ");
+                let found = format!(
+                    "its facets look to different sides at {count} edges, the first at ({at}): solids pass through it from behind"
+                );
+                (found, "turn its facets to the side on which the solids are")
+            }
+            Form::Shape { .. } => return None,
+        };
+        let found = format!("= \"{}\": {found}", name.value);
+        Some(Diagnostic::warning(Code::NoContact, &name.place, found).remedy(remedy))
+    };
+    scene.contacts.rigid_bodies().iter().filter_map(doubt).collect()
 }
 
 /// What the bodies of particles are to contact, in their order.
@@ -341,9 +373,14 @@ fn form(
     Some(match &rigid.shape {
         RigidShape::Plane { point, normal } => (shape(Shape::HalfSpace), turned(*point, normal)),
         RigidShape::Box { point, size } => (shape(Shape::Cuboid { half: size * 0.5 }), Frame::at(point + size * 0.5)),
-        RigidShape::Cylinder { point, axis, length, radius } => {
-            let cylinder = Shape::Cylinder { radius: *radius, half_length: 0.5 * length };
-            (shape(cylinder), turned(point + axis * (0.5 * length), axis))
+        RigidShape::Cylinder { point, axis, length, radius, open } => {
+            let (radius, half_length) = (*radius, 0.5 * length);
+            let form = if *open {
+                Form::Shape { shape: Shape::Tube { radius, half_length }, hollow: true }
+            } else {
+                shape(Shape::Cylinder { radius, half_length })
+            };
+            (form, turned(point + axis * half_length, axis))
         }
         RigidShape::Sphere { point, radius } => (shape(Shape::Ball { radius: *radius }), Frame::at(*point)),
         RigidShape::Group { group, point } => (group_facets_of_tool(context, group, point)?, Frame::at(*point)),
@@ -431,12 +468,16 @@ fn drive(rigid_body: &mut RigidBody, rigid: &model::RigidBody) {
     rigid_body.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
 }
 
-/// Moments of inertia of a shape of uniform density about its centre, in its axes [kg m²].
+/// Moments of inertia of a shape of uniform density, or a wall of uniform thickness, about its centre, in its axes [kg m²].
 fn inertia_tensor(shape: &RigidShape, mass: f64) -> Mat3 {
     match shape {
         RigidShape::Box { size, .. } => {
             let s = size.component_mul(size);
             Mat3::from_diagonal(&(Vec3::new(s.y + s.z, s.z + s.x, s.x + s.y) * (mass / 12.0)))
+        }
+        RigidShape::Cylinder { length, radius, open: true, .. } => {
+            let across = mass * (6.0 * radius * radius + length * length) / 12.0;
+            Mat3::from_diagonal(&Vec3::new(across, across, mass * radius * radius))
         }
         RigidShape::Cylinder { length, radius, .. } => {
             let across = mass * (3.0 * radius * radius + length * length) / 12.0;

@@ -161,8 +161,7 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
         // What is thrown meets springs.
         BodyKind::Solid(solid) => !solid.damage && solid.initial_velocity.iter().all(Option::is_none),
         BodyKind::Rigid(rigid) => {
-            let has_facets = matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. });
-            !(has_facets || rigid.inside || rigid.free_rotation || rigid.servo.is_some() || rigid.free.contains(&true))
+            !(rigid.has_walls() || rigid.free_rotation || rigid.servo.is_some() || rigid.free.contains(&true))
         }
         _ => false,
     };
@@ -226,7 +225,7 @@ fn distance(mesh: &Mesh, rigid: &RigidBody, offset: Vec3, (low, high): (Vec3, Ve
         }
         RigidShape::Box { point, size } => (*point, point + size),
         RigidShape::Sphere { point, radius } => (point - Vec3::repeat(*radius), point + Vec3::repeat(*radius)),
-        RigidShape::Cylinder { point, axis, length, radius } => {
+        RigidShape::Cylinder { point, axis, length, radius, .. } => {
             let (end, around) = (point + axis * *length, Vec3::repeat(*radius));
             (point.inf(&end) - around, point.sup(&end) + around)
         }

@@ -7,7 +7,7 @@ use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 use super::Context;
 use super::bodies::Numbering;
 use crate::Place;
-use crate::model::{Body, BodyKind, BondLawKind, Control, Damping, RigidShape, SolverKind};
+use crate::model::{Body, BodyKind, BondLawKind, Control, Damping, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
@@ -167,8 +167,8 @@ pub fn may_rest(body: &Body) -> bool {
     }
 }
 
-/// Whether a body is rigid facets or a container.
+/// Whether a body is rigid facets, a container or an open cylinder.
 fn has_walls(body: &Body) -> bool {
     let BodyKind::Rigid(rigid) = &body.kind else { return false };
-    rigid.inside || matches!(rigid.shape, RigidShape::Group { .. } | RigidShape::Stl { .. })
+    rigid.has_walls()
 }

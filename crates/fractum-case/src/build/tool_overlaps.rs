@@ -148,10 +148,12 @@ fn near(points: &[Vec3], solid: &Solid, body: usize) -> bool {
     (0..axes).all(|axis| low[axis] < to[axis] && from[axis] < high[axis])
 }
 
-/// Points on the surface of a rigid body, in space; none of containers and of planes, which have no end.
+/// Points on the surface of a rigid body, in space; none of containers, of tubes, and of planes, which have no end.
 fn points_of(tool: &RigidBody) -> Vec<Vec3> {
     let own = match &tool.form {
-        Form::Shape { hollow: true, .. } | Form::Shape { shape: Shape::HalfSpace, .. } => Vec::new(),
+        Form::Shape { hollow: true, .. } | Form::Shape { shape: Shape::HalfSpace | Shape::Tube { .. }, .. } => {
+            Vec::new()
+        }
         Form::Shape { shape: Shape::Cuboid { half }, .. } => of_cuboid(half),
         Form::Shape { shape: Shape::Cylinder { radius, half_length }, .. } => of_cylinder(*radius, *half_length),
         Form::Shape { shape: Shape::Ball { radius }, .. } => of_ball(*radius),

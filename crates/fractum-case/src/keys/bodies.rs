@@ -133,6 +133,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].point", K::Point(D::LENGTH), "[0, 0, 0]", "Plane: a point on it; box: its lower corner; cylinder: centre of the face where it begins; sphere: its centre; rigid group and stl: point about which it turns"),
     key("bodies[].normal", K::Direction, "", "Rigid plane, required there: normal that points out of the body"),
     key("bodies[].axis", K::Direction, "\"x\"", "Cylinder, rigid or of loose particles: direction from its beginning to its end"),
+    key("bodies[].ends", K::Choice(|| vec!["closed", "open"]), "\"closed\"", "Rigid cylinder: open takes the lids away. What is left is a wall without thickness, which particles feel from both sides and on its rims"),
     key("bodies[].inside", K::Flag, "false", "Rigid box, cylinder and sphere: true makes a container, which holds particles inside"),
     key("bodies[].velocity", K::Table, "", "Rigid: prescribed velocity, by components; the others are held, or free"),
     key("bodies[].velocity.x", K::TimeFunction(D::VELOCITY), "", "Along x"),

@@ -32,6 +32,7 @@ mod tables;
 mod temperature;
 mod velocity;
 mod wave_speed;
+mod work;
 
 use fractum_scene::Probe;
 
@@ -167,5 +168,6 @@ measures! {
     radial_cracks::RadialCracksAbout,
     damaged::Damaged,
     wave_speed::WaveSpeed,
+    work::WorkOf,
     mode::ModeOf,
 }

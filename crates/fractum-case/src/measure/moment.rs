@@ -1,8 +1,8 @@
-//! Moment of support reactions about an axis [N m].
+//! Moment of support reactions, or of a rigid body, about an axis [N m].
 
 use fractum_dem::crack_shape::Axis;
 use fractum_fem::motion;
-use fractum_scene::{PointProbe, Population, Probe, ProbeOfPoints};
+use fractum_scene::{PointProbe, Population, Probe, ProbeOfPoints, RigidBody};
 
 use super::Measure;
 use super::scenery::Scenery;
@@ -12,10 +12,10 @@ use crate::reader::Table;
 use crate::selection::{Selection, selection};
 use crate::unit::Dimension as D;
 
-/// Moment of support reactions about an axis [N m].
+/// Moment of support reactions, or of a rigid body, about an axis [N m].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Moment {
-    /// On these nodes.
+    /// On these nodes, or of this rigid body.
     pub on: Selection,
     /// The axis.
     pub about: Axis,
@@ -25,8 +25,8 @@ impl Measure for Moment {
     const KEY: &'static str = "moment";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].moment", K::Table, "", "Moment of the support reactions on a group about an axis, in N m; levers are those without load"),
-        key("probes[].moment.group", K::Text, "", "Mesh group; required without `where`"),
+        key("probes[].moment", K::Table, "", "Moment of the support reactions on a group, or of a rigid body on what touches it, about an axis, in N m; levers of supports are those without load, those of rigid bodies those of the moment"),
+        key("probes[].moment.group", K::Text, "", "Mesh group or rigid body; required without `where`"),
         key("probes[].moment.where", K::Condition, "", "Which nodes, by their positions at the start; without `group`: which nodes of all solid bodies"),
         key("probes[].moment.about", K::Table, "", "The axis"),
         key("probes[].moment.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
@@ -43,6 +43,15 @@ impl Measure for Moment {
     }
 
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
+        let Axis { point, direction } = self.about;
+        // Levers at the instant of the forces: the body has moved on since.
+        let moment = move |body: &RigidBody, dt: f64| {
+            let place = body.frame.origin - body.frame.velocity * dt;
+            -(body.contact_moment() + (place - point).cross(&body.contact_force())).dot(&direction)
+        };
+        if let Some(rigid) = scene.number_of_rigid(&self.on, moment) {
+            return rigid;
+        }
         scene.refuse_out_of_plane(&self.on, &self.about.direction);
         let nodes = scene.names.nodes(&self.on);
         let nodes = motion::with_copies(scene.solid, nodes);

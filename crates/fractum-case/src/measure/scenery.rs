@@ -1,5 +1,7 @@
 //! A scene while its probes are made.
 
+use std::fmt;
+
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 use fractum_scene::{
@@ -63,18 +65,22 @@ pub(crate) struct Scenery<'a> {
 /// A vector of a rigid body, after a step of this size [s].
 pub(super) type OfRigid = fn(&RigidBody, f64) -> Vec3;
 
-/// Component of a vector of a rigid body.
-#[derive(Debug)]
-struct OfRigidBody {
+/// A number of a rigid body, after a step of this size [s].
+struct OfRigidBody<F> {
     rigid_body: usize,
-    direction: Vec3,
-    value: OfRigid,
+    value: F,
 }
 
-impl Probe for OfRigidBody {
+impl<F> fmt::Debug for OfRigidBody<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "OfRigidBody({})", self.rigid_body)
+    }
+}
+
+impl<F: Fn(&RigidBody, f64) -> f64 + Send + Sync> Probe for OfRigidBody<F> {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let rigid_body = &probed.scene.contacts.rigid_bodies()[self.rigid_body];
-        (self.value)(rigid_body, probed.scene.clock.dt_before).dot(&self.direction)
+        (self.value)(rigid_body, probed.scene.clock.dt_before)
     }
 }
 
@@ -102,16 +108,26 @@ impl Scenery<'_> {
         along: Along,
         value: OfRigid,
     ) -> Option<Option<Box<dyn Probe>>> {
-        let rigid_body = self.names.rigid_body(on.group_name())?;
+        self.names.rigid_body(on.group_name())?;
         let Along::Direction(direction) = along else {
             self.error_at(on, format!("= \"{}\": a rigid body", on.label()), "a direction with it, such as \"x\"");
             return Some(None);
         };
+        self.number_of_rigid(on, move |body, dt| value(body, dt).dot(&direction))
+    }
+
+    /// The same for a number of it.
+    pub(super) fn number_of_rigid(
+        &mut self,
+        on: &Selection,
+        value: impl Fn(&RigidBody, f64) -> f64 + Send + Sync + 'static,
+    ) -> Option<Option<Box<dyn Probe>>> {
+        let rigid_body = self.names.rigid_body(on.group_name())?;
         if let Some(within) = &on.within {
             let found = "has no effect on a rigid body".to_owned();
             self.names.error(&within.place, found, "nodes or particles; remove the key");
         }
-        Some(Some(Box::new(OfRigidBody { rigid_body, direction, value })))
+        Some(Some(Box::new(OfRigidBody { rigid_body, value })))
     }
 
     /// Where supports hold these nodes; an error where they do not, or not along the direction. Another stage may hold

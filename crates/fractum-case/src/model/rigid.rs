@@ -83,6 +83,15 @@ impl Servo {
 }
 
 impl RigidBody {
+    /// Whether it has walls, and no inside that solids could meet from outside: facets, a container, or a cylinder without lids.
+    pub fn has_walls(&self) -> bool {
+        let open = matches!(
+            self.shape,
+            RigidShape::Group { .. } | RigidShape::Stl { .. } | RigidShape::Cylinder { open: true, .. }
+        );
+        self.inside || open
+    }
+
     /// Its functions of time.
     pub fn functions(&self) -> impl Iterator<Item = &Spanned<TimeFunction>> {
         let components = self.velocity.iter().chain(&self.spin).chain(&self.force).flatten();
@@ -117,6 +126,8 @@ pub enum RigidShape {
         length: f64,
         /// Radius [m], > 0.
         radius: f64,
+        /// Whether it is a wall without lids, felt from both sides.
+        open: bool,
     },
     /// A sphere.
     Sphere {

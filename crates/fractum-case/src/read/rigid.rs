@@ -128,7 +128,11 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<RigidShape> {
         Kind::Cylinder => {
             let axis = direction(table, "axis").or_if_absent(Vec3::x());
             let (long, wide) = (length("length"), length("radius"));
-            RigidShape::Cylinder { point: start?, axis: axis?, length: long?, radius: wide? }
+            let open = table.one_of("ends", &[("closed", false), ("open", true)]).or(false);
+            if open {
+                table.refuse("inside", "on a cylinder whose ends are open: particles feel its wall from both sides");
+            }
+            RigidShape::Cylinder { point: start?, axis: axis?, length: long?, radius: wide?, open }
         }
         Kind::Sphere => {
             let wide = length("radius");

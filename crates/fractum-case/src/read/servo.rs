@@ -94,7 +94,7 @@ fn force(table: &Table<'_>, shape: Option<&RigidShape>, along: Option<(usize, f6
 fn face(shape: &RigidShape, axis: usize) -> Option<f64> {
     match shape {
         RigidShape::Box { size, .. } => Some(size.product() / size[axis]),
-        RigidShape::Cylinder { axis: own, radius, .. } if axis_of(own)?.0 == axis => {
+        RigidShape::Cylinder { axis: own, radius, open: false, .. } if axis_of(own)?.0 == axis => {
             Some(std::f64::consts::PI * radius * radius)
         }
         _ => None,

@@ -113,6 +113,23 @@ impl FacetMesh {
         }
     }
 
+    /// Number of edges that belong to one facet only.
+    pub fn open_edges(&self) -> usize {
+        self.edge_facets.iter().filter(|[a, b]| a == b).count()
+    }
+
+    /// An edge along which both of its facets run the same way, so that they look to opposite sides; and how many there are.
+    pub fn turned_over(&self) -> Option<(u32, usize)> {
+        let runs = |facet: u32, [a, b]: [u32; 2]| {
+            let corners = self.corners(facet);
+            (0..corners.len()).any(|k| corners[k] == a && corners[(k + 1) % corners.len()] == b)
+        };
+        let sides = self.edges.iter().zip(&self.edge_facets).zip(0..);
+        let is_turned = |(&ends, &[a, b]): (&[u32; 2], &[u32; 2])| a != b && runs(a, ends) == runs(b, ends);
+        let mut turned = sides.filter(|(side, _)| is_turned(*side)).map(|(_, edge)| edge);
+        turned.next().map(|first| (first, 1 + turned.count()))
+    }
+
     /// Number of facets.
     pub fn len(&self) -> usize {
         self.facets.len()
@@ -314,6 +331,9 @@ mod tests {
         assert!(matches!(fin, Err(SurfaceError::NonManifold { facets: 3, .. })));
         let roof = FacetMesh::new(&points, &[[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]).unwrap();
         assert!(matches!(roof.require_closed(&points), Err(SurfaceError::Open { open: 4, .. })));
+        assert_eq!((roof.open_edges(), roof.turned_over()), (4, None));
+        let turned = FacetMesh::new(&points, &[[0, 1, 4], [2, 1, 4], [2, 3, 4], [3, 0, 4]]).unwrap();
+        assert_eq!(turned.turned_over().map(|(edge, count)| (turned.edge(edge), count)), Some(([1, 4], 2)));
         let closed: [&[u32]; 5] = [&[0, 1, 4], &[1, 2, 4], &[2, 3, 4], &[3, 0, 4], &[3, 2, 1, 0]];
         let pyramid = FacetMesh::new(&points, &closed).unwrap();
         assert_eq!(pyramid.require_closed(&points), Ok(()));

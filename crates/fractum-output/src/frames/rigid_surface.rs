@@ -128,6 +128,7 @@ fn surface_of(body: &RigidBody, scene: &Scene) -> (Vec<Vec3>, Vec<[u32; 3]>) {
             Shape::Cylinder { radius, half_length } => {
                 turned(&[(0.0, -half_length), (radius, -half_length), (radius, half_length), (0.0, half_length)])
             }
+            Shape::Tube { radius, half_length } => turned(&[(radius, -half_length), (radius, half_length)]),
             Shape::Ball { radius } => {
                 let rings = AROUND / 2;
                 let of_ring = |ring: u32| {

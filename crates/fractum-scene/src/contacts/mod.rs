@@ -35,6 +35,7 @@ pub use servo::{Servo, ServoArea};
 pub use solid_surface::SolidSurface;
 
 use crate::bonded::Bonded;
+use crate::clock::Clock;
 use crate::coupling::Debris;
 use crate::time_function::TimeFunction;
 use crate::watch::Site;
@@ -315,12 +316,12 @@ impl Contacts {
     }
 
     /// Advances the rigid bodies with the forces of tⁿ.
-    pub(crate) fn move_bodies(&mut self, time: f64, dt_before: f64, dt_after: f64) -> HalfSteps {
+    pub(crate) fn move_bodies(&mut self, clock: &Clock) -> HalfSteps {
         let mut work = HalfSteps::default();
-        let gravity = if self.rigid_bodies.is_empty() { Vec3::zeros() } else { self.gravity(time) };
+        let gravity = if self.rigid_bodies.is_empty() { Vec3::zeros() } else { self.gravity(clock.time) };
         RigidBody::find_servo_areas(&mut self.rigid_bodies);
         for rigid_body in &mut self.rigid_bodies {
-            work += rigid_body.advance(time, dt_before, dt_after, &gravity);
+            work += rigid_body.advance(clock, &gravity);
         }
         work
     }

@@ -6,6 +6,7 @@ use fractum_math::{HalfSteps, Mat3, Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::servo::{Servo, ServoArea, ServoStep};
+use crate::clock::Clock;
 use crate::time_function::TimeFunction;
 
 /// What a rigid body looks like, in its own axes.
@@ -15,7 +16,7 @@ pub enum Form {
     Shape {
         /// The shape.
         shape: Shape,
-        /// Whether particles are inside.
+        /// Whether it is a container, with particles inside; true of tubes, which have no inside.
         hollow: bool,
     },
     /// Facets.
@@ -77,6 +78,10 @@ pub struct RigidBody {
     moment: Vec3,
     /// Mass of what touches it [kg].
     touched: f64,
+    /// Work on what touches it up to tⁿ [J].
+    work: f64,
+    /// The same in the half step after tⁿ [J].
+    work_after: f64,
 }
 
 impl std::fmt::Debug for RigidBody {
@@ -92,6 +97,8 @@ pub(super) struct RigidBodyState {
     angular_momentum: Vec3,
     force: Vec3,
     moment: Vec3,
+    work: f64,
+    work_after: f64,
 }
 
 impl RigidBody {
@@ -111,6 +118,8 @@ impl RigidBody {
             force: Vec3::zeros(),
             moment: Vec3::zeros(),
             touched: 0.0,
+            work: 0.0,
+            work_after: 0.0,
         }
     }
 
@@ -130,6 +139,14 @@ impl RigidBody {
         }
     }
 
+    /// Number of edges of its facets that belong to one of them only; none of a shape.
+    pub fn open_edges(&self) -> usize {
+        match &self.form {
+            Form::Shape { .. } => 0,
+            Form::Mesh { mesh, .. } => mesh.open_edges(),
+        }
+    }
+
     /// Mass that contacts move: infinite where no axis is free.
     pub(super) fn mass(&self) -> f64 {
         self.inertia.map_or(f64::INFINITY, |inertia| inertia.mass)
@@ -143,6 +160,21 @@ impl RigidBody {
     /// Moment of the contacts on it about its reference point at the last step [N m].
     pub fn contact_moment(&self) -> Vec3 {
         self.moment
+    }
+
+    /// Work that it has done on what touches it, by force and moment, since the start [J].
+    pub fn work(&self) -> f64 {
+        self.work
+    }
+
+    /// Adds work on what touches it at rest [J].
+    pub(crate) fn add_work(&mut self, work: f64) {
+        self.work += work;
+    }
+
+    /// Work per time on what touches it [W].
+    fn power(&self) -> f64 {
+        -self.force.dot(&self.frame.velocity) - self.moment.dot(&self.frame.spin)
     }
 
     /// Way of its reference point since the start [m].
@@ -294,8 +326,11 @@ impl RigidBody {
     }
 
     /// Advances velocities and place with the forces of tⁿ.
-    pub(super) fn advance(&mut self, time: f64, dt_before: f64, dt_after: f64, gravity: &Vec3) -> HalfSteps {
+    pub(super) fn advance(&mut self, clock: &Clock, gravity: &Vec3) -> HalfSteps {
+        let (time, dt_before, dt_after) = (clock.time, clock.dt_before, clock.dt_after);
         let mut work = HalfSteps::default();
+        let before = if clock.begins_motion() { 0.0 } else { 0.5 * dt_before * self.power() };
+        self.work += std::mem::take(&mut self.work_after) + before;
         let dt_kick = 0.5 * (dt_before + dt_after);
         for axis in 0..3 {
             let before = self.frame.velocity[axis];
@@ -322,6 +357,7 @@ impl RigidBody {
             work.after.external += 0.5 * outside * after * dt_after;
         }
         self.turn(time, dt_before, dt_after, &mut work);
+        self.work_after = 0.5 * dt_after * self.power();
         self.frame = self.frame.moved(dt_after);
         work
     }
@@ -350,13 +386,14 @@ impl RigidBody {
     }
 
     pub(super) fn state(&self) -> RigidBodyState {
-        let RigidBody { frame, angular_momentum, force, moment, .. } = self;
-        RigidBodyState { frame: *frame, angular_momentum: *angular_momentum, force: *force, moment: *moment }
+        let &RigidBody { frame, angular_momentum, force, moment, work, work_after, .. } = self;
+        RigidBodyState { frame, angular_momentum, force, moment, work, work_after }
     }
 
     pub(super) fn restore(&mut self, state: RigidBodyState) {
-        let RigidBodyState { frame, angular_momentum, force, moment } = state;
+        let RigidBodyState { frame, angular_momentum, force, moment, work, work_after } = state;
         (self.frame, self.angular_momentum, self.force, self.moment) = (frame, angular_momentum, force, moment);
+        (self.work, self.work_after) = (work, work_after);
     }
 }
 

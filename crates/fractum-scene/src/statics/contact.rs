@@ -374,7 +374,8 @@ fn accept_grounds(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {
                 * ((overlap.max(0.0) + was.max(0.0)) * (overlap - was)
                     - (overlap.max(0.0).powi(2) - was.max(0.0).powi(2)));
             let force = normal * pressure - slip * stiff_across;
-            external += 0.5 * (c.force + force).dot(&way) - idle;
+            let work = 0.5 * (c.force + force).dot(&way) - idle;
+            external += work;
             (c.memory.slip, c.brought_back) = (slip, Vec3::zeros());
             (c.force, c.couple, c.arm) = (force, Vec3::zeros(), normal * (overlap - c.radius));
             c.stored = half * overlap.max(0.0).powi(2);
@@ -384,6 +385,7 @@ fn accept_grounds(scene: &mut Scene, before: &[Vec3], present: f64, time: f64) {
                 ground.rigid_body.and_then(|rigid_body| contacts.rigid_bodies_mut().get_mut(rigid_body))
             {
                 rigid_body.push(&-force, &Vec3::zeros(), &(place + c.arm), 0.0);
+                rigid_body.add_work(work);
             }
         }
         shape_contacts[index].candidates = candidates;

@@ -61,12 +61,18 @@ impl Plan {
         let shape = match &rigid.shape {
             RigidShape::Plane { .. } => "plane".to_owned(),
             RigidShape::Box { .. } => "box".to_owned(),
+            RigidShape::Cylinder { open: true, .. } => "cylinder without lids, felt from both sides".to_owned(),
             RigidShape::Cylinder { .. } => "cylinder".to_owned(),
             RigidShape::Sphere { .. } => "sphere".to_owned(),
             RigidShape::Group { .. } | RigidShape::Stl { .. } => {
                 let rigid_body = scene.contacts.rigid_bodies().iter().find(|rigid_body| rigid_body.name == name);
                 let facets = rigid_body.map_or(0, |rigid_body| rigid_body.facets());
-                format!("mesh of {facets} facets")
+                let side = match rigid_body.map_or(0, |rigid_body| rigid_body.open_edges()) {
+                    0 => String::new(),
+                    1 => ", open at 1 edge and felt from both sides".to_owned(),
+                    count => format!(", open at {count} edges and felt from both sides"),
+                };
+                format!("mesh of {facets} facets{side}")
             }
         };
         let inside = if rigid.inside { ", around its particles" } else { "" };
