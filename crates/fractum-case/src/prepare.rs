@@ -7,7 +7,7 @@ use fractum_mesh::Mesh;
 use fractum_pack::{ClosedSurface, Domain, PackError, SurfaceData, read_stl_facets};
 use fractum_prepare::{
     At, BondedReport, BondedRequest, BondedSubstance, Cache, Fault, LooseFill, LooseRequest, PackingRequest,
-    PreparedBody, Shape, prepare_bonded, prepare_loose,
+    ParticleFile, PreparedBody, Shape, prepare_bonded, prepare_loose,
 };
 use fractum_scene::ContactParameters;
 
@@ -24,6 +24,8 @@ pub struct MadeBodies {
     pub prepared: Vec<PreparedBody>,
     /// What the plan says of them.
     pub reports: Vec<BondedReport>,
+    /// Bodies whose particles come from files, and what was read of these.
+    pub reads: Vec<(String, String)>,
     /// Doubts that do not keep them from running.
     pub warnings: Vec<Diagnostic>,
     /// What took how long, for the log.
@@ -58,7 +60,10 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache, tell: &dyn Fn(&st
                 }
             }
             BodyKind::Particles(loose) => match prepare_loose(&loose_request(loose, &case.materials[loose.material])) {
-                Ok(prepared) => all.prepared.push(prepared),
+                Ok(made) => {
+                    all.reads.extend(made.read.map(|told| (body.name.value.clone(), told)));
+                    all.prepared.push(made.body);
+                }
                 Err(fault) => errors.push(of_loose(&body.name.place, loose, &fault)),
             },
             BodyKind::Solid(_) | BodyKind::Rigid(_) => {}
@@ -125,7 +130,13 @@ fn shape_of(shape: &BondedShape) -> Shape<'_> {
 
 fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<'a> {
     let source = match &loose.source {
-        LooseSource::Table { file, unit } => LooseFill::Table { bytes: &file.bytes, unit: *unit },
+        LooseSource::File { file, unit, velocity_unit, frame, species } => LooseFill::File(ParticleFile {
+            bytes: &file.bytes,
+            unit: *unit,
+            velocity_unit: *velocity_unit,
+            frame: *frame,
+            species: species.as_deref(),
+        }),
         LooseSource::Cloud { region, radius, dispersion, count, seed } => LooseFill::Cloud {
             region: &region.value,
             radius: *radius,
@@ -162,8 +173,8 @@ fn of_bonded(case: &Case, name: &Spanned<String>, bonded: &BondedBody, fault: &F
 /// As [`of_bonded`].
 fn of_loose(name: &Place, loose: &LooseBody, fault: &Fault) -> Diagnostic {
     match (fault.at, &loose.source) {
-        (At::File, LooseSource::Table { file, .. }) => named(&file.name, fault),
-        (At::Source, LooseSource::Table { file, .. }) => placed(&file.name.place, String::new(), fault),
+        (At::File, LooseSource::File { file, .. }) => named(&file.name, fault),
+        (At::Source, LooseSource::File { file, .. }) => placed(&file.name.place, String::new(), fault),
         (At::Size, LooseSource::Cloud { count: Some(count), .. }) => {
             placed(&count.place, format!("= {}", count.value), fault)
         }

@@ -5,6 +5,8 @@ use fractum_dem::{FractureCriterion, LocalBond};
 use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention, Domain, Grading};
 
+use crate::particle_file::ParticleFile;
+
 /// A bonded body to be made.
 #[derive(Clone, Debug)]
 pub struct BondedRequest<'a> {
@@ -95,13 +97,8 @@ pub struct LooseRequest<'a> {
 /// Where loose particles come from.
 #[derive(Clone, Copy, Debug)]
 pub enum LooseFill<'a> {
-    /// A table of x, y, z and radius.
-    Table {
-        /// Content of the file.
-        bytes: &'a [u8],
-        /// Length of its unit [m].
-        unit: f64,
-    },
+    /// A file of particles.
+    File(ParticleFile<'a>),
     /// A cloud that fills a region loosely: no two touch.
     Cloud {
         /// The region.

@@ -12,7 +12,7 @@
 //! use fractum_prepare::{LooseFill, LooseRequest, Region, prepare_loose};
 //! let region = Region::Box { point: Vec3::zeros(), size: Vec3::repeat(1.0) };
 //! let source = LooseFill::Cloud { region: &region, radius: 0.1, dispersion: 0.0, count: Some(20), seed: 1 };
-//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9 }).unwrap();
+//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9 }).unwrap().body;
 //! assert_eq!((made.particles.len(), made.pairs.len()), (20, 0));
 //! ```
 
@@ -23,6 +23,7 @@ mod body;
 mod bonded;
 mod cache;
 mod loose;
+mod particle_file;
 mod region;
 
 pub use asked::{
@@ -35,4 +36,5 @@ pub use bonded::{
 };
 pub use cache::Cache;
 pub use fractum_calibrate::Micro;
-pub use loose::prepare_loose;
+pub use loose::{MadeParticles, prepare_loose};
+pub use particle_file::ParticleFile;

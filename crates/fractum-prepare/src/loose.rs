@@ -1,4 +1,4 @@
-//! Loose particles made ready: clouds filled, tables read.
+//! Loose particles made ready: clouds filled, files read.
 
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::{Vec3, sphere_volume};
@@ -6,16 +6,26 @@ use fractum_pack::{Grading, cloud, insert};
 
 use crate::asked::{Amount, At, Fault, LooseFill, LooseRequest, Region, graded_count};
 use crate::body::PreparedBody;
+use crate::particle_file;
+
+/// Loose particles that were made.
+pub struct MadeParticles {
+    /// What the scene is built from.
+    pub body: PreparedBody,
+    /// What was read, where they come from a file.
+    pub read: Option<String>,
+}
 
 /// Makes loose particles ready.
 ///
 /// # Errors
-/// A file that is no table of spheres; a region without room.
-pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
+/// A file that holds no spheres; a region without room.
+pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
+    let mut file = None;
     let (position, radius, at) = match asked.source {
-        LooseFill::Table { bytes, unit } => {
-            let (position, radius) = read_table(bytes, unit)?;
-            (position, radius, At::Source)
+        LooseFill::File(of) => {
+            let found = file.insert(particle_file::read(&of)?);
+            (std::mem::take(&mut found.position), found.radius.clone(), At::Source)
         }
         LooseFill::Cloud { region, radius, dispersion, count, seed } => {
             let most = count.map_or(usize::MAX, |count| count as usize);
@@ -39,12 +49,18 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
         }
     };
     let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
-    let particles =
+    let mut particles =
         Particles::at_rest(position, radius, volume * asked.density).map_err(|error| Fault::new(at, error))?;
+    if let Some(found) = &mut file {
+        let motions = [(&mut particles.velocity, &mut found.velocity), (&mut particles.spin, &mut found.spin)];
+        for (own, given) in motions.into_iter().filter(|(_, given)| !given.is_empty()) {
+            *own = std::mem::take(given);
+        }
+    }
     // No bond uses it.
     let section = BeamSection::new(asked.young_modulus, 1.0).map_err(|error| Fault::new(at, error))?;
     let (pairs, shares, walls, law) = (Vec::new(), Vec::new(), Vec::new(), section.into());
-    Ok(PreparedBody {
+    let body = PreparedBody {
         particles,
         pairs,
         law,
@@ -55,7 +71,8 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<PreparedBody, Fault> {
         fraction: 1.0,
         fracture: None,
         replaced: Vec::new(),
-    })
+    };
+    Ok(MadeParticles { body, read: file.map(|file| file.told()) })
 }
 
 /// Particles that may be asked for.
@@ -111,32 +128,4 @@ fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -
     // Cells touch the walls of a box exactly; rounding must not push them out.
     let slack = if matches!(region, Region::Box { .. }) { 1e-12 } else { 0.0 };
     cloud(&lower, &upper, |x| depth(x) * (1.0 + slack) + slack * radius, radius, dispersion, most, seed)
-}
-
-/// Rows of x, y, z and radius, separated by commas, semicolons or blanks; a first row of names and `#` comments are
-/// passed over.
-fn read_table(bytes: &[u8], unit: f64) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
-    let wrong = |found: String| Fault { expected: "rows of x, y, z, radius", ..Fault::new(At::File, found) };
-    let text = std::str::from_utf8(bytes).map_err(|_| wrong("is not text".to_owned()))?;
-    let (mut position, mut radius) = (Vec::new(), Vec::new());
-    let mut first = true;
-    for (number, line) in (1..).zip(text.lines()) {
-        let line = line.split('#').next().unwrap_or_default();
-        let words: Vec<&str> =
-            line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).filter(|w| !w.is_empty()).collect();
-        if words.is_empty() {
-            continue;
-        }
-        let numbers: Option<Vec<f64>> = words.iter().map(|word| word.parse().ok()).collect();
-        match numbers.as_deref() {
-            Some(&[x, y, z, r]) if [x, y, z, r].iter().all(|v: &f64| v.is_finite()) && r > 0.0 => {
-                position.push(Vec3::new(x, y, z) * unit);
-                radius.push(r * unit);
-            }
-            None if first => {}
-            _ => return Err(wrong(format!("line {number}: `{}`", line.trim()))),
-        }
-        first = false;
-    }
-    if position.is_empty() { Err(wrong("holds no particle".to_owned())) } else { Ok((position, radius)) }
 }

@@ -82,7 +82,7 @@ impl Plan {
 
     /// The plan of a case that was read.
     pub fn new(input: &Input) -> Self {
-        let Input { case, mesh, built, later, bonded, choice, .. } = input;
+        let Input { case, mesh, built, later, bonded, reads, choice, .. } = input;
         let mut plan = Plan { lines: Vec::new() };
         let scene = &built.scene;
         if !case.source.title.is_empty() {
@@ -97,7 +97,7 @@ impl Plan {
         if let Some(source) = &case.mesh {
             plan.describe_mesh(source, mesh);
         }
-        plan.describe_bodies(case, scene, bonded);
+        plan.describe_bodies(case, scene, bonded, reads);
         plan.describe_scatter(case, &built.weibull);
         plan.describe_rates(case, scene);
         plan.describe_ties(&built.ties);

@@ -24,6 +24,7 @@ mod meant;
 mod mesh;
 mod modes;
 mod new;
+mod particle_files;
 mod parts;
 mod peeling;
 mod processor;

@@ -22,12 +22,18 @@ pub struct LooseBody {
 /// Where loose particles come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LooseSource {
-    /// A table of x, y, z and radius.
-    Table {
+    /// A file of particles.
+    File {
         /// The file.
         file: FileContent,
         /// Length of its unit [m].
         unit: f64,
+        /// Its unit of velocity [m/s]; `None` = velocities are not taken.
+        velocity_unit: Option<f64>,
+        /// Its frame, from 0 on; `None` = the last one.
+        frame: Option<u64>,
+        /// Type of the particles that are taken; `None` = all.
+        species: Option<String>,
     },
     /// A cloud that fills a region loosely: no two touch.
     Cloud {

@@ -20,13 +20,13 @@ enum Kind {
 
 /// Reads loose particles of the material at `material`, which is nothing where it is wrong.
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
-    let source = if table.has("file") { from_table(table) } else { cloud(table) };
+    let source = if table.has("file") { from_file(table) } else { cloud(table) };
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
     Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity: initial_velocity? })
 }
 
-fn from_table(table: &Table<'_>) -> Option<LooseSource> {
+fn from_file(table: &Table<'_>) -> Option<LooseSource> {
     for key in [
         "shape",
         "point",
@@ -45,13 +45,31 @@ fn from_table(table: &Table<'_>) -> Option<LooseSource> {
     }
     let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
     let file = file(table, "file");
-    Some(LooseSource::Table { file: file?, unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)) })
+    let velocity_unit = optional(table, "velocity_unit", |name| super::unit(table, name, Dimension::VELOCITY));
+    if table.has("velocity_unit") {
+        table.refuse("initial_velocity", "beside velocity_unit, which takes the velocities of the file");
+    }
+    let frame = optional(table, "frame", |name| {
+        let frame = table.integer(name).check(|frame| *frame < 1_000_000_000, "a number of a frame, from 0 on");
+        frame.given()
+    });
+    let species = optional(table, "species", |name| table.text(name).given());
+    Some(LooseSource::File {
+        file: file?,
+        unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)),
+        velocity_unit: velocity_unit?,
+        frame: frame?,
+        species: species?,
+    })
 }
 
 fn cloud(table: &Table<'_>) -> Option<LooseSource> {
     if !table.has("shape") {
         let note = Diagnostic::error(&table.place, "has neither shape nor file");
-        table.reader.note(note.expected("a shape to fill with particles, or a file of x, y, z, radius"));
+        table.reader.note(note.expected("a shape to fill with particles, or a file of particles"));
+    }
+    for key in ["velocity_unit", "frame", "species"] {
+        table.refuse(key, "without a file of particles");
     }
     let graded = table.has("sizes");
     let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];

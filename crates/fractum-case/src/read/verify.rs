@@ -170,7 +170,7 @@ impl Around<'_> {
                 },
                 BodyKind::Particles(loose) => match loose.source {
                     LooseSource::Cloud { seed, .. } | LooseSource::Graded { seed, .. } => Some(seed),
-                    LooseSource::Table { .. } => None,
+                    LooseSource::File { .. } => None,
                 },
                 BodyKind::Solid(_) | BodyKind::Rigid(_) => None,
             };

@@ -69,7 +69,7 @@ fn the_hash_follows_the_content() {
     let elsewhere = tempfile::tempdir().unwrap();
     let path = elsewhere.path().join("moved.toml");
     std::fs::write(&path, &text).unwrap();
-    for file in ["motion.csv", "part.stl", "old.fpk"] {
+    for file in ["motion.csv", "part.stl", "old.fpk", "settled.xyz"] {
         std::fs::copy(folder().join(file), elsewhere.path().join(file)).unwrap();
     }
     assert_eq!(read_case(&path, &[]).unwrap().hash(), case.hash(), "the path plays no part");

@@ -42,6 +42,8 @@ pub struct Input {
     pub later: Vec<(Case, BuiltScene)>,
     /// What became of the bonded bodies.
     pub bonded: Vec<BondedReport>,
+    /// Bodies whose particles come from files, and what was read of these.
+    pub reads: Vec<(String, String)>,
     /// What took how long to make ready.
     pub timings: Vec<String>,
     /// Which solver was chosen and why, where the case leaves it open.
@@ -162,7 +164,7 @@ impl Prepared {
         let course = Course::of(later.iter().map(|(_, built)| built).chain([&built]));
         plots::check(&case, &columns::columns(&case, &built.scene, course))?;
         let timings = notes.into_iter().chain(made.timings).collect();
-        Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, timings, choice })
+        Ok(Input { case, mesh, mesh_hash, built, later, bonded: made.reports, reads: made.reads, timings, choice })
     }
 }
 

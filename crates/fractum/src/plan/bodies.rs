@@ -19,7 +19,13 @@ use fractum_scene::Scene;
 use super::{Plan, rows};
 
 impl Plan {
-    pub(super) fn describe_bodies(&mut self, case: &Case, scene: &Scene, bonded: &[BondedReport]) {
+    pub(super) fn describe_bodies(
+        &mut self,
+        case: &Case,
+        scene: &Scene,
+        bonded: &[BondedReport],
+        reads: &[(String, String)],
+    ) {
         let (mut index, mut reports) = (0, bonded.iter());
         for body in &case.bodies {
             match &body.kind {
@@ -53,6 +59,9 @@ impl Plan {
                     }
                 }
                 BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
+            }
+            for (_, told) in reads.iter().filter(|(name, _)| *name == body.name.value) {
+                self.add("", told.clone());
             }
         }
     }
