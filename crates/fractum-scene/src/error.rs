@@ -49,9 +49,10 @@ pub enum SceneError {
         /// Axis, x, y or z.
         axis: char,
     },
-    /// A load that does not grow in proportion to time.
+    /// A load that neither is constant nor grows in proportion to time.
     #[error(
-        "a load along {axis} does not grow in proportion to time, as it must on a bonded body at rest; give a number times t"
+        "a load along {axis} neither is constant nor grows in proportion to time, as it must on a bonded body at rest; give a number, or a number \
+         times t"
     )]
     LoadNotProportional {
         /// Axis, x, y or z.

@@ -62,6 +62,68 @@ fn pressures_at_rest_have_the_strains_of_hooke() {
     }
 }
 
+/// A constant pressure p holds from the start: under a platen that comes nearer by ε the axial stress is -2 ν p - E ε. The work of the platen
+/// and of the pressure is what the body stores.
+#[test]
+fn a_constant_confinement_at_rest_stands_beside_a_platen_that_moves() {
+    let platen = "[[supports]]\ngroup = \"core.x+\"\ndisplacement = { x = \"-0.04 mm*t/1 s\" }\n";
+    let push = "[[probes]]\nname = \"push\"\nreaction = { group = \"core.x-\", along = \"x\" }\n";
+    let area = std::f64::consts::PI * 0.012 * 0.012;
+    let stress = |pressure: &str, platen: &str| {
+        let loads = format!("[[loads]]\ngroup = \"core.radius\"\npressure = \"{pressure}\"\n{HELD}{platen}{push}");
+        let place = Workplace::new(&case(&loads, AT_REST));
+        let one = run(&place, "one", "1");
+        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-6, "{}", one["energy"]);
+        let two = run(&place, "two", "2");
+        assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+        one["probes"]["push"]["final"].as_f64().unwrap() / area
+    };
+    let held = "[[supports]]\ngroup = \"core.x+\"\nfix = \"x\"\n";
+    let (alone, pressed, both) = (stress("10 MPa", held), stress("0 Pa", platen), stress("10 MPa", platen));
+    println!("{alone} {pressed} {both}");
+    assert!((alone / 4e6 - 1.0).abs() < 0.12 && (pressed / 20e6 - 1.0).abs() < 0.06, "{alone} {pressed}");
+    assert!((both - alone - pressed).abs() < 1e-6 * both, "{both} for {alone} + {pressed}");
+    // What grows to the same load has the same equilibrium.
+    let growing = stress("10 MPa*t/1 s", platen);
+    assert!((both - growing).abs() < 1e-6 * both, "{both} {growing}");
+}
+
+/// The first bond breaks where all loads in proportion to those of that moment break it, and the run has the same bits after a checkpoint.
+#[test]
+fn bonds_break_beside_constant_loads_at_the_load_that_breaks_them() {
+    let bar = CYLINDER
+        .replace(
+            "[[bodies]]",
+            "[materials.rock.fracture]\ntensile_strength = \"10 MPa\"\ncriterion = \"principal\"\n[[bodies]]",
+        )
+        .replace("particles = 1500", "particles = 600");
+    let first = |pressure: &str, pull: &str, expected: Option<f64>| {
+        let loads = format!(
+            "[[loads]]\ngroup = \"core.radius\"\npressure = \"{pressure}\"\n{HELD}\
+             [[supports]]\ngroup = \"core.x+\"\ndisplacement = {{ x = \"{pull}*t/1 s\" }}\n"
+        );
+        let text = bar.replace("LOADS", &loads).replace("SOLVER", "kind = \"static\"\nend = \"1 s\"\nmax_steps = 12");
+        let text = text.replace("fields = { every = \"1 s\" }\n", "[output.checkpoint]\nevery = \"1 us\"\n");
+        let place = Workplace::new(&text.replace("[output]\n", ""));
+        let one = run(&place, "one", "1");
+        assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-4, "{}", one["energy"]);
+        let time = one["fracture"][0]["first_break"].as_f64().unwrap();
+        if expected.is_none() {
+            let two = run(&place, "two", "2");
+            let resumed = resumed(&place, "two");
+            assert_eq!((&two["state_hash"], &two["energy"]), (&one["state_hash"], &one["energy"]));
+            assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
+        }
+        time
+    };
+    let free = first("0 Pa", "0.06 mm", Some(1.0));
+    let confined = first("6 MPa", "0.06 mm", None);
+    let together = first(&format!("6 MPa*t/{confined:.17e} s"), "0.06 mm", Some(confined));
+    println!("{free} {confined} {together}");
+    assert!((together / confined - 1.0).abs() < 1e-5, "{together} for {confined}");
+    assert!((free / confined - 1.0).abs() > 0.01, "{free} {confined}");
+}
+
 /// In motion nothing holds the body, and it stays where it is: the pressure is in equilibrium.
 #[test]
 fn a_pressure_in_motion_drives_nothing_away_and_has_the_same_bits_after_a_checkpoint() {
@@ -92,8 +154,8 @@ fn loads_that_a_bonded_body_cannot_have_are_told() {
         assert_eq!(ended.code, Some(1), "{}", ended.stdout);
         ended.stderr
     };
-    let loads = format!("[[loads]]\ngroup = \"core.radius\"\npressure = \"10 MPa\"\n{HELD}");
-    assert!(told(&loads, AT_REST).contains("does not grow in proportion to time"));
+    let loads = format!("[[loads]]\ngroup = \"core.radius\"\npressure = \"10 MPa*(t/1 s)^2\"\n{HELD}");
+    assert!(told(&loads, AT_REST).contains("neither is constant nor grows in proportion to time"));
     let text = told("[[loads]]\ngroup = \"core.radius\"\npressure = 1\nin_cracks = true\n", "end = \"1 ms\"");
     assert!(text.contains("with in_cracks"), "{text}");
     let text = told(

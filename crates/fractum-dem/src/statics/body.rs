@@ -1,5 +1,7 @@
 //! A bonded body at rest while its bonds break, each equilibrium found from the last.
 
+use std::ops::{Add, Mul};
+
 use fractum_math::{Sym3, Vec3};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -25,6 +27,9 @@ pub struct StaticBody {
     supports: LatticeSupports,
     /// Forces from outside on every particle, in scaled variables; none where nothing is loaded.
     loads: Vec<Dof6>,
+    /// Sums of the sizes of these forces at the start, and of those that were handed over since.
+    loads_at_start: f64,
+    handed_over: f64,
     iterate: Iterate,
     tolerance: Tolerance,
     /// Square of the support reactions at the first equilibrium: what unbalanced forces are compared with.
@@ -38,6 +43,10 @@ pub struct StaticBody {
 pub(super) struct BodyMemory {
     x: Vec<Dof6>,
     r: Vec<Dof6>,
+    loads: Vec<Dof6>,
+    handed_over: f64,
+    /// Bonds without stiffness.
+    loose: Vec<u32>,
     reference: f64,
     solves: u64,
     iterations: u64,
@@ -48,11 +57,22 @@ impl StaticBody {
     pub(super) fn memory(&self) -> BodyMemory {
         let Iterate { x, r, .. } = &self.iterate;
         let (solves, iterations) = (self.solves as u64, self.iterations as u64);
-        BodyMemory { x: x.clone(), r: r.clone(), reference: self.reference, solves, iterations }
+        BodyMemory {
+            x: x.clone(),
+            r: r.clone(),
+            loads: self.loads.clone(),
+            handed_over: self.handed_over,
+            loose: self.lattice.loose().collect(),
+            reference: self.reference,
+            solves,
+            iterations,
+        }
     }
 
-    /// Puts it back into a body whose bonds have been broken in the same order.
+    /// Puts it back into a body as it was at the start.
     pub(super) fn recall(&mut self, memory: BodyMemory) {
+        memory.loose.iter().for_each(|&bond| self.loosen(bond));
+        (self.loads, self.handed_over) = (memory.loads, memory.handed_over);
         (self.iterate.x, self.iterate.r, self.reference) = (memory.x, memory.r, memory.reference);
         (self.solves, self.iterations) = (memory.solves as usize, memory.iterations as usize);
     }
@@ -93,6 +113,8 @@ impl StaticBody {
         let mut body = StaticBody {
             iterate: Iterate::new(&lattice, x, vec![[0.0; 6]; n]),
             loads: loads.iter().map(|load| lattice.rescale(load, 1.0 / lattice.scale())).collect(),
+            loads_at_start: 0.0,
+            handed_over: 0.0,
             lattice,
             supports,
             tolerance,
@@ -107,6 +129,7 @@ impl StaticBody {
             body.reference += (0..6).filter(held).map(|d| force[d] * force[d]).sum::<f64>();
         }
         body.reference += body.loads.iter().map(|load| dot(load, load)).sum::<f64>();
+        body.loads_at_start = body.loads.iter().map(size).sum();
         body.refresh();
         Ok(body)
     }
@@ -128,12 +151,47 @@ impl StaticBody {
 
     /// Work of the forces from outside on the displacements, at their full size all the way [J].
     pub fn work_of_loads(&self) -> f64 {
-        self.loads.iter().zip(&self.iterate.x).map(|(load, x)| dot(load, x)).sum()
+        self.work_of_loads_on(self)
     }
 
     /// Whether forces from outside act.
     pub fn is_loaded(&self) -> bool {
         !self.loads.is_empty()
+    }
+
+    /// Share of the forces from outside on some particles, and of those that were handed over before, in all at the start.
+    pub(super) fn share_of_loads(&self, particles: impl Iterator<Item = usize>) -> f64 {
+        (particles.map(|i| size(&self.load(i))).sum::<f64>() + self.handed_over) / self.loads_at_start
+    }
+
+    /// Particles that no support holds in any way.
+    pub(super) fn is_free(&self, particle: usize) -> bool {
+        self.supports.fixed[particle] == 0
+    }
+
+    /// Hands the forces from outside on a particle that nothing holds over to the nearest of those that are held, with the moment that
+    /// goes with them; equilibrium is lost until [`StaticBody::solve`].
+    ///
+    /// - `held`: whether a particle hangs together with a support
+    pub(super) fn hand_over(&mut self, particle: usize, held: impl Fn(usize) -> bool) {
+        let load = self.load(particle);
+        if load == [0.0; 6] {
+            return;
+        }
+        let place = self.lattice.position();
+        let distance = |i: usize| (place[i] - place[particle]).norm_squared();
+        let takers = (0..place.len()).filter(|&i| held(i));
+        let Some(taker) = takers.min_by(|&a, &b| distance(a).total_cmp(&distance(b))) else { return };
+        let moment =
+            (place[particle] - place[taker]).cross(&Vec3::new(load[0], load[1], load[2])) / self.lattice.scale();
+        let mut given = load;
+        (0..3).for_each(|axis| given[3 + axis] += moment[axis]);
+        (0..6).for_each(|d| self.iterate.r[particle][d] -= load[d]);
+        self.handed_over += size(&load);
+        self.loads[particle] = [0.0; 6];
+        let fixed = self.supports.fixed[taker];
+        (0..6).for_each(|d| self.loads[taker][d] += given[d]);
+        (0..6).filter(|d| fixed >> d & 1 == 0).for_each(|d| self.iterate.r[taker][d] += given[d]);
     }
 
     /// Breaks a bond; equilibrium is lost until [`StaticBody::solve`].
@@ -224,22 +282,52 @@ impl StaticBody {
         (self.solves, self.iterations)
     }
 
-    /// Elastic energy of a bond [J].
-    pub fn bond_energy(&self, bond: u32) -> f64 {
+    /// Elastic energy of a bond where this state is taken `factor` times, beside another one of the same body [J].
+    pub(super) fn bond_energy(&self, bond: u32, factor: f64, beside: Option<&StaticBody>) -> f64 {
+        let energy = |strained: Strained| {
+            let end = self.lattice.bond(bond)[0];
+            let load = strained.load(end, &self.lattice.stiffness(), self.lattice.section().radius);
+            let [first, second] = strained.turn;
+            0.5 * (load.normal * strained.stretch
+                + load.bending[0].dot(&first)
+                + load.bending[1].dot(&second)
+                + load.torsion * strained.twist)
+        };
+        match beside {
+            Some(beside) => energy(self.strained(bond) * factor + beside.strained(bond)),
+            None => factor * factor * energy(self.strained(bond)),
+        }
+    }
+
+    fn strained(&self, bond: u32) -> Strained {
         let [own, end] = self.lattice.bond(bond);
         let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
-        let k = self.lattice.stiffness();
-        let strained = Strained::of(own, a, b, &k);
-        let load = strained.load(own, &k, self.lattice.section().radius);
-        let [first, second] = strained.turn;
-        0.5 * (load.normal * strained.stretch
-            + load.bending[0].dot(&first)
-            + load.bending[1].dot(&second)
-            + load.torsion * strained.twist)
+        Strained::of(own, a, b, &self.lattice.stiffness())
+    }
+
+    /// Elastic work of this state's forces on the displacements of another one that its supports do not move, u'·K u [J].
+    pub(super) fn work_on(&self, other: &StaticBody) -> f64 {
+        let free = |i: usize, d: usize| self.supports.fixed[i] >> d & 1 == 0;
+        let force = |i: usize, d: usize| self.load(i)[d] - self.iterate.r[i][d];
+        let displacement = &other.iterate.x;
+        let work =
+            |i: usize| -> f64 { (0..6).filter(|&d| free(i, d)).map(|d| force(i, d) * displacement[i][d]).sum::<f64>() };
+        (0..displacement.len()).map(work).sum()
+    }
+
+    /// Work of the forces from outside of this state on the displacements of another one, at their full size all the way [J].
+    pub fn work_of_loads_on(&self, other: &StaticBody) -> f64 {
+        self.loads.iter().zip(&other.iterate.x).map(|(load, x)| dot(load, x)).sum()
     }
 }
 
+/// Size of a force with its moment.
+fn size(load: &Dof6) -> f64 {
+    dot(load, load).sqrt()
+}
+
 /// How a bond is deformed.
+#[derive(Clone, Copy)]
 struct Strained {
     /// Change of length [m].
     stretch: f64,
@@ -270,6 +358,30 @@ impl Strained {
             bending: [(a * 2.0 + b) * bend, (a + b * 2.0) * bend],
             torsion: k.torsion * end.inverse * self.twist,
             radius,
+        }
+    }
+}
+
+impl Add for Strained {
+    type Output = Strained;
+
+    fn add(self, other: Strained) -> Strained {
+        Strained {
+            stretch: self.stretch + other.stretch,
+            turn: [self.turn[0] + other.turn[0], self.turn[1] + other.turn[1]],
+            twist: self.twist + other.twist,
+        }
+    }
+}
+
+impl Mul<f64> for Strained {
+    type Output = Strained;
+
+    fn mul(self, factor: f64) -> Strained {
+        Strained {
+            stretch: self.stretch * factor,
+            turn: self.turn.map(|turn| turn * factor),
+            twist: self.twist * factor,
         }
     }
 }
@@ -307,10 +419,8 @@ impl LoadedBonds for StaticBody {
     }
 
     fn load(&self, bond: u32) -> BondLoad {
-        let [own, end] = self.lattice.bond(bond);
-        let (a, b) = (&self.iterate.x[end.other as usize], &self.iterate.x[own.other as usize]);
-        let k = self.lattice.stiffness();
-        Strained::of(own, a, b, &k).load(own, &k, self.lattice.section().radius)
+        let radius = self.lattice.section().radius;
+        self.strained(bond).load(self.lattice.bond(bond)[0], &self.lattice.stiffness(), radius)
     }
 
     fn axis(&self, bond: u32) -> Vec3 {

@@ -58,6 +58,11 @@ impl LatticeSupports {
         self.value[particle as usize][dof] = value;
     }
 
+    /// The same degrees of freedom, held where they are.
+    pub(crate) fn held(&self) -> Self {
+        LatticeSupports { fixed: self.fixed.clone(), value: vec![[0.0; 6]; self.value.len()] }
+    }
+
     /// Whether a degree of freedom is prescribed.
     pub fn is_fixed(&self, particle: u32, dof: usize) -> bool {
         self.fixed[particle as usize] >> dof & 1 == 1
@@ -277,6 +282,11 @@ impl Lattice {
         for slot in self.halves[bond as usize] {
             self.ends[slot as usize].inverse = 0.0;
         }
+    }
+
+    /// Bonds without stiffness.
+    pub(crate) fn loose(&self) -> impl Iterator<Item = u32> {
+        (0..self.halves.len() as u32).filter(|&bond| self.bond(bond)[0].inverse == 0.0)
     }
 
     /// The only bond that holds a particle and the particle at its other end; none where more bonds hold it.

@@ -231,7 +231,7 @@ impl Bonded {
         Ok(())
     }
 
-    /// Whether all supports and loads grow in proportion to time until `end` [s].
+    /// Whether all supports and loads grow in proportion to time until `end` [s], but for loads that hold from the start.
     ///
     /// # Errors
     /// [`SceneError::NotProportional`], [`SceneError::LoadNotProportional`] with the first that does not.

@@ -3,7 +3,7 @@
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{
     Batch, BondEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic, QuasiStaticState,
-    Tolerance,
+    StaticBody, Tolerance,
 };
 use fractum_math::{Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub struct BondedStaticSettings {
 pub struct BondedStaticState {
     run: QuasiStaticState,
     stage: LoadStage,
-    push: f64,
+    push: [f64; 2],
     work: f64,
     sudden: f64,
 }
@@ -50,10 +50,10 @@ pub struct BondedStatics {
     /// Particle, axis and displacement of what moves, at the end.
     prescribed: Vec<(u32, usize, f64)>,
     stage: LoadStage,
-    /// Work of the loads at their full size on the intact body, where they alone drive it [J].
-    intact: Option<f64>,
-    /// Work of supports and loads from none to all of their size, were nothing to break, times two [J].
-    push: f64,
+    /// Work at their full size of the constant loads on the intact body, and of those that grow where they alone drive it [J].
+    intact: [Option<f64>; 2],
+    /// What supports and loads do per load factor were nothing to break, at none and more with the factor [J].
+    push: [f64; 2],
     /// Work of supports and loads so far [J].
     work: f64,
     /// Elastic energy that breaks have set free beyond that of the broken bonds [J].
@@ -101,23 +101,25 @@ impl BondedStatics {
             stop: STRENGTHLESS,
             tolerance: Tolerance { residual: settings.tolerance, iterations: ITERATIONS, stop },
         };
-        let forces = bonded.loads.proportional(bonded, &all.mass, settings.end)?;
-        let loaded = forces.iter().any(|force| *force != Vec3::zeros());
-        let loads: Vec<[f64; 6]> = if loaded {
-            forces.iter().map(|force| [force.x, force.y, force.z, 0.0, 0.0, 0.0]).collect()
-        } else {
-            Vec::new()
+        let on_particles = |forces: Vec<Vec3>| -> Vec<[f64; 6]> {
+            let loaded = forces.iter().any(|force| *force != Vec3::zeros());
+            let all = forces.iter().map(|force| [force.x, force.y, force.z, 0.0, 0.0, 0.0]);
+            all.filter(|_| loaded).collect()
         };
-        let run = QuasiStatic::under_loads(lattice, supports, &loads, &guess, &what)?;
+        let [constant, growing] = bonded.loads.proportional(bonded, &all.mass, settings.end)?.map(on_particles);
+        let run = QuasiStatic::under_loads(lattice, supports, [&constant, &growing], &guess, &what)?;
         let driven = prescribed.iter().any(|(.., value)| *value != 0.0);
+        let of_growing = (!growing.is_empty() && !driven).then(|| run.body().work_of_loads());
+        let of_constant = run.constant().map(StaticBody::work_of_loads);
         let mut statics = BondedStatics {
-            intact: (loaded && !driven).then(|| run.body().work_of_loads()),
+            intact: [of_constant, of_growing],
+            // Constant loads are put on slowly before the first step.
+            work: 0.5 * of_constant.unwrap_or(0.0),
             run,
             settings,
             prescribed,
             stage: LoadStage::Failing,
-            push: 0.0,
-            work: 0.0,
+            push: [0.0; 2],
             sudden: 0.0,
         };
         statics.push = statics.push();
@@ -158,18 +160,26 @@ impl BondedStatics {
 
     /// Whether the body has broken so far that it does not bear its loads.
     pub fn has_given_way(&self) -> bool {
-        self.stage == LoadStage::Separated && self.run.body().is_loaded()
+        self.stage == LoadStage::Separated && self.is_loaded()
+    }
+
+    fn is_loaded(&self) -> bool {
+        self.run.body().is_loaded() || self.run.constant().is_some()
     }
 
     /// Equilibria found, and iterations for all of them.
     pub fn effort(&self) -> (usize, usize) {
-        self.run.body().effort()
+        self.run.effort()
     }
 
-    fn push(&self) -> f64 {
-        let work = |&(i, axis, value): &(u32, usize, f64)| self.run.body().reaction(i)[axis] * value;
-        let of_supports: f64 = self.prescribed.iter().filter(|(.., value)| *value != 0.0).map(work).sum();
-        of_supports + self.run.body().work_of_loads()
+    fn push(&self) -> [f64; 2] {
+        let growing = self.run.body();
+        let of_supports = |body: &StaticBody| -> f64 {
+            let moving = self.prescribed.iter().filter(|(.., value)| *value != 0.0);
+            moving.map(|&(i, axis, value)| body.reaction(i)[axis] * value).sum()
+        };
+        let constant = self.run.constant().map_or(0.0, |body| of_supports(body) + body.work_of_loads_on(growing));
+        [constant, of_supports(growing) + growing.work_of_loads()]
     }
 
     /// Moves the supports on to the next failure and brings the scene there.
@@ -177,20 +187,21 @@ impl BondedStatics {
         let before = self.run.factor();
         let (point, stage) = self.run.load_to_next_failure(|_| false);
         self.stage = stage;
-        self.work += 0.5 * self.push * (self.run.factor().powi(2) - before.powi(2));
+        let [constant, growing] = self.push;
+        self.work +=
+            constant * (self.run.factor() - before) + 0.5 * growing * (self.run.factor().powi(2) - before.powi(2));
         let time = point.displacement * self.settings.end;
         scene.clock.dt_before = time - scene.clock.time;
         scene.clock.dt_after = 0.0;
         scene.clock.time = time;
         scene.clock.step += 1;
         let Bonded { particles, reference, bodies, supports, energy, .. } = &mut scene.bonded;
-        let factor = self.run.factor();
-        for (i, u) in self.run.body().state().iter().enumerate() {
+        for (i, u) in self.run.displacements().iter().enumerate() {
             let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
-            particles.position[i] = reference[i] + shift * factor;
-            particles.orientation[i] = rotation_by(turn * factor);
+            particles.position[i] = reference[i] + shift;
+            particles.orientation[i] = rotation_by(turn);
         }
-        supports.set_reactions(|particle, axis| self.run.body().reaction(particle)[axis] * factor);
+        supports.set_reactions(|particle, axis| self.run.reaction(particle)[axis]);
         let body = &mut bodies[0];
         note_closest(body, &self.run, reference, time);
         // Parts of the energy as the beams show them; their sum is that of the equilibrium.
@@ -212,25 +223,28 @@ impl BondedStatics {
     /// Breaks what fails and finds equilibrium again.
     fn break_and_rebalance(&mut self, scene: &mut Scene) -> Result<(), StepError> {
         let before = self.run.cracks().len();
-        let square = self.run.factor().powi(2);
-        let elastic = square * self.run.body().energy();
+        let elastic = self.run.energy();
         let (step, time) = (scene.clock.step, scene.clock.time);
-        let loads_before = self.run.body().work_of_loads();
         let found = self.run.break_and_rebalance();
         let lost: f64 = self.run.cracks()[before..].iter().map(|crack| crack.energy).sum();
         match found {
-            Ok(()) => {
+            Ok(given) => {
                 // Supports stand still; loads do work as the body gives way.
-                let given = square * (self.run.body().work_of_loads() - loads_before);
                 self.work += given;
-                self.sudden += elastic + given - square * self.run.body().energy() - lost;
+                self.sudden += elastic + given - self.run.energy() - lost;
                 self.push = self.push();
             }
-            Err(DemError::NotConverged { .. }) if self.run.body().is_loaded() => self.stage = LoadStage::Separated,
+            Err(DemError::NotConverged { .. }) if self.is_loaded() => self.stage = LoadStage::Separated,
             Err(DemError::Interrupted) => return Err(StepError::Interrupted { step, time }),
             Err(error) => return Err(StepError::NoBondedEquilibrium { step, time, error }),
         }
-        if self.intact.is_some_and(|intact| self.run.body().work_of_loads() > GIVES_WAY * intact) {
+        let works = [self.run.constant().map(StaticBody::work_of_loads), Some(self.run.body().work_of_loads())];
+        if self
+            .intact
+            .iter()
+            .zip(works)
+            .any(|(intact, work)| intact.zip(work).is_some_and(|(intact, work)| work > GIVES_WAY * intact))
+        {
             self.stage = LoadStage::Separated;
         }
         if self.stage == LoadStage::Separated {

@@ -238,13 +238,18 @@ impl Loads {
         self.make_room();
     }
 
-    /// Forces on all points at the time `end` [N], which must grow in proportion to time.
+    /// Forces on all points [N] that hold from the start, and what comes to them until the time `end`, in proportion to time.
     ///
     /// - `masses`: of all points [kg]
     ///
     /// # Errors
     /// [`SceneError::LoadNotProportional`].
-    pub(crate) fn proportional(&self, points: &impl Points, masses: &[f64], end: f64) -> Result<Vec<Vec3>, SceneError> {
+    pub(crate) fn proportional(
+        &self,
+        points: &impl Points,
+        masses: &[f64],
+        end: f64,
+    ) -> Result<[Vec<Vec3>; 2], SceneError> {
         let at = |share: f64| {
             let mut applied = Applied::default();
             self.loads.iter().for_each(|load| load.apply(points, None, share * end, &mut applied));
@@ -252,19 +257,21 @@ impl Loads {
             applied.forces.iter().for_each(|(point, force)| sums[*point as usize] += force);
             sums
         };
-        let whole = at(1.0);
-        let largest = whole.iter().map(|force| force.amax()).fold(0.0, f64::max);
-        for share in [0.0, 0.1, 0.25, 0.5, 0.7] {
+        let (constant, mut growing) = (at(0.0), at(1.0));
+        let largest = constant.iter().chain(&growing).map(|force| force.amax()).fold(0.0, f64::max);
+        growing.iter_mut().zip(&constant).for_each(|(growing, constant)| *growing -= constant);
+        for share in [0.1, 0.25, 0.5, 0.7] {
+            let expected = constant.iter().zip(&growing).map(|(constant, growing)| constant + growing * share);
             let off = at(share)
                 .iter()
-                .zip(&whole)
-                .map(|(part, whole)| part - whole * share)
+                .zip(expected)
+                .map(|(part, expected)| part - expected)
                 .find(|off| off.amax() > 1e-9 * largest);
             if let Some(off) = off {
                 return Err(SceneError::LoadNotProportional { axis: ['x', 'y', 'z'][off.iamax()] });
             }
         }
-        Ok(whole)
+        Ok([constant, growing])
     }
 
     /// Whether points have weight.
