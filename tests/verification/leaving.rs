@@ -208,6 +208,7 @@ fn nothing_conducts_through_a_solid_that_has_left() {
             longest: 1e-4,
             alone: false,
             at_rest: false,
+            unstressed: false,
         };
         let heat = Heat::new(&mut solid, &mut Bonded::default(), heat).unwrap();
         let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &solid.reference).unwrap());

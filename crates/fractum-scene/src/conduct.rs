@@ -91,16 +91,23 @@ pub(crate) fn warm_to(scene: &mut Scene, target: f64) -> Result<(), StepError> {
 
 /// Takes the temperatures of an equilibrium at a time; returns half of the work of its expansion, at the stresses of the one before [J].
 pub(crate) fn settle_heat(scene: &mut Scene, target: f64) -> Result<f64, StepError> {
-    let (step, time) = (scene.clock.step, scene.clock.time);
+    let (step, time, first) = (scene.clock.step, scene.clock.time, is_first(scene));
     let Scene { optional, solid, bonded, .. } = scene;
     let Some(heat) = &mut optional.heat else { return Ok(0.0) };
-    heat.settle(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })
+    heat.settle(target, solid, bonded, first).map_err(|reason| StepError::Heat { step, time, reason })
 }
 
 /// The other half, at the stresses of the equilibrium [J].
 pub(crate) fn finish_settled_expansion(scene: &mut Scene) -> f64 {
+    let first = is_first(scene);
     let Scene { optional, solid, bonded, .. } = scene;
-    optional.heat.as_mut().map_or(0.0, |heat| heat.finish_settled_expansion(solid, bonded))
+    optional.heat.as_mut().map_or(0.0, |heat| heat.finish_settled_expansion(solid, bonded, first))
+}
+
+/// Whether an equilibrium is the first one of a run that did not start with energy: what was stress-free at another temperature than that of
+/// the start is brought from there.
+fn is_first(scene: &Scene) -> bool {
+    scene.clock.step == 0 && scene.ledger.initial == 0.0
 }
 
 /// Nothing conducts through elements that have left.

@@ -404,6 +404,29 @@ fn layers_at_rest_bend_as_timoshenko_says() {
     }
 }
 
+/// Layers that were without stress at another temperature have the state and the energy of layers that were cooled from it, and their balance closes.
+#[test]
+fn layers_that_were_free_of_stress_at_another_temperature_have_the_energy_of_cooled_ones() {
+    let mesh = mesh_bytes(&layers([60, 8]), MshFormat::V4_1Binary);
+    let cooled = LAYERS.replace("NU", "0.3");
+    let ramp = "{ ramp = [[\"0 s\", \"300 K\"], [\"1000 s\", \"200 K\"]] }";
+    let start = "initial_temperature = \"200 K\"\nstress_free_temperature = \"300 K\"";
+    let stressed = cooled.replace(ramp, "\"200 K\"").replace("initial_temperature = \"300 K\"", start);
+    let of = |case: &str| {
+        let place = Workplace::with_mesh(case, &mesh);
+        let summary = run(&place, "out", "1");
+        assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-8, "{}", summary["energy"]);
+        assert!(!format!("{}", summary["warnings"]).contains("energy-balance"), "{}", summary["warnings"]);
+        let elastic = summary["energy"]["elastic"].as_f64().unwrap();
+        // The first row is no state in which bodies are held at their temperature.
+        let first = &history(&place, "out", &["tip", "elastic"])[0];
+        assert_eq!(first[..], [0.0, 0.0], "{first:?}");
+        [summary["probes"]["tip"]["final"].as_f64().unwrap(), elastic]
+    };
+    let (slow, at_once) = (of(&cooled), of(&stressed));
+    assert!(slow.iter().zip(at_once).all(|(a, b)| (b / a - 1.0).abs() < 1e-6), "{slow:?} {at_once:?}");
+}
+
 /// A bar that is held at both ends and cooled.
 const COOLED: &str = r#"fractum = 1
 [mesh]

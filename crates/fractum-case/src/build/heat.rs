@@ -60,6 +60,7 @@ pub(super) fn with_heat(
         longest: case.solver.end / STEPS,
         alone,
         at_rest: case.solver.kind == SolverKind::Static,
+        unstressed: case.solver.kind == SolverKind::Static && case.in_situ.is_none(),
     };
     match Heat::new(&mut scene.solid, &mut scene.bonded, settings) {
         Ok(made) => {

@@ -76,6 +76,22 @@ pub fn expansion_work(solid: &Solid) -> f64 {
     solid.blocks.iter().map(|block| block.expansion_work).sum()
 }
 
+/// Work of bodies that were brought from no stress at all to the thermal strains where the present change began, and to the present
+/// stresses, in proportion: -½ Σ V σ : εᵗ [J].
+pub fn starting_work(solid: &Solid) -> f64 {
+    let of_block = |block: &Block| {
+        let Some(own) = &block.cells.thermal else { return 0.0 };
+        let model = &solid.bodies[block.body];
+        let work = |cell: usize| {
+            let strain = elastic_strain(&block.cells, cell, &solid.displacement, model.body.kinematics);
+            let start = own.unit * own.start[cell];
+            -0.5 * block.cells.volume[cell] * block.nominal_stress(cell, &model.elasticity, strain).dot(start)
+        };
+        (0..block.cells.len()).map(work).sum::<f64>()
+    };
+    solid.blocks.iter().map(of_block).sum()
+}
+
 /// Heat that an element conducts per conductivity, as its local edges and ∫ -∇Nᵢ·∇Nⱼ dV of each [m].
 pub fn element_conduction(solid: &Solid, body: usize, element: u32) -> impl Iterator<Item = ([u32; 2], f64)> + use<> {
     let model = &solid.bodies[body];

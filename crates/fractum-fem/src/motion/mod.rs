@@ -15,6 +15,7 @@ pub(crate) mod viscous_solid;
 pub use central_difference::{LocalDamping, WholeStep};
 pub use expansion::{
     begin_expansion, element_conduction, expand_to, expansion_work, find_expansion_work, set_expansion, start_expanded,
+    starting_work,
 };
 pub use inverted::{crushed_element, inverted_element};
 pub use phase_damage::{element_phase, has_phase_fields, phase_sizes};

@@ -132,15 +132,22 @@ impl Expansion {
     }
 
     /// Takes what was tried as the step before, too; returns half of the work, at the stresses of before [J].
-    pub(super) fn settle(&mut self, solid: &mut Solid, bonded: &mut Bonded) -> f64 {
-        let work = self.half_work(solid, bonded);
+    ///
+    /// - `first`: whether no equilibrium came before: bodies had no stress yet
+    pub(super) fn settle(&mut self, solid: &mut Solid, bonded: &mut Bonded, first: bool) -> f64 {
+        let work = if first { 0.0 } else { self.half_work(solid, bonded) };
         motion::expand_to(solid, [self.passed[1]; 2]);
         work
     }
 
-    /// The other half, at the stresses of the equilibrium [J].
-    pub(super) fn finish_settled(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
-        let work = self.half_work(solid, bonded);
+    /// The other half, at the stresses of the equilibrium, with that of the strains at the start where it is the first [J].
+    pub(super) fn finish_settled(&mut self, solid: &Solid, bonded: &mut Bonded, first: bool) -> f64 {
+        let mut work = self.half_work(solid, bonded);
+        if first {
+            let start = motion::starting_work(solid);
+            self.work += start;
+            work += start;
+        }
         self.passed[0] = self.passed[1];
         work
     }

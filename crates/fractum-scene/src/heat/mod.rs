@@ -5,7 +5,7 @@ mod measure;
 mod pairs;
 mod step;
 
-use fractum_fem::Solid;
+use fractum_fem::{Solid, motion};
 use fractum_heat::{HeatCondition, HeatField, HeatFieldState, HeatLedger, HeatNetwork, ImplicitHeat};
 use serde::{Deserialize, Serialize};
 
@@ -58,6 +58,8 @@ pub struct HeatSettings {
     pub alone: bool,
     /// Whether bodies that expand are at rest, and no wave is excited.
     pub at_rest: bool,
+    /// Whether bodies have no stress before the first step, at rest: they get that of their temperature in it.
+    pub unstressed: bool,
 }
 
 /// Heat in the bodies of a scene.
@@ -117,6 +119,10 @@ impl Heat {
         };
         if let Some(expansion) = &mut expansion {
             expansion.start(0.0, solid, bonded, field.temperature());
+            // Equilibria begin without stress; bodies are brought to their temperature on the way to the first one.
+            if settings.unstressed {
+                motion::start_expanded(solid, &vec![0.0; nodes]);
+            }
         }
         let stable =
             settings.safety * field.stable_step() * if expansion.is_some() && !settings.at_rest { SMOOTH } else { 1.0 };

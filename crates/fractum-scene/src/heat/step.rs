@@ -104,16 +104,24 @@ impl Heat {
     }
 
     /// Takes the temperatures of an equilibrium at `time`; returns half of the work of the expansion that was tried, at the stresses of before [J].
-    pub(crate) fn settle(&mut self, time: f64, solid: &mut Solid, bonded: &mut Bonded) -> Result<f64, String> {
+    ///
+    /// - `first`: whether no equilibrium came before
+    pub(crate) fn settle(
+        &mut self,
+        time: f64,
+        solid: &mut Solid,
+        bonded: &mut Bonded,
+        first: bool,
+    ) -> Result<f64, String> {
         match &mut self.expansion {
-            Some(expansion) => Ok(expansion.settle(solid, bonded)),
+            Some(expansion) => Ok(expansion.settle(solid, bonded, first)),
             None => self.conduct_to(time, solid, bonded).map(|()| 0.0),
         }
     }
 
     /// The other half [J]; nothing expands from here to there any more.
-    pub(crate) fn finish_settled_expansion(&mut self, solid: &Solid, bonded: &mut Bonded) -> f64 {
-        self.expansion.as_mut().map_or(0.0, |expansion| expansion.finish_settled(solid, bonded))
+    pub(crate) fn finish_settled_expansion(&mut self, solid: &Solid, bonded: &mut Bonded, first: bool) -> f64 {
+        self.expansion.as_mut().map_or(0.0, |expansion| expansion.finish_settled(solid, bonded, first))
     }
 
     /// The other half of the work of the last expansion [J].
