@@ -178,6 +178,25 @@ pub fn cost_of_bands(solid: &Solid, body: usize) -> Option<f64> {
     (needed > 0.0).then(|| taken / needed)
 }
 
+/// Share of the cracks of a body with a phase field that lies at nodes of other bodies, where its field ends; none without one, or without a crack.
+pub fn share_at_borders(solid: &Solid, body: usize) -> Option<f64> {
+    let model = &solid.bodies[body];
+    let edges = model.edges.as_ref().filter(|_| model.phase.is_some())?;
+    let mut shared = vec![false; solid.reference.len()];
+    for (_, other) in solid.bodies.iter().enumerate().filter(|(index, _)| *index != body) {
+        let corners = other.body.shape.node_count();
+        other.body.elements.iter().flat_map(|nodes| &nodes[..corners]).for_each(|&node| shared[node as usize] = true);
+    }
+    let [mut whole, mut there] = [0.0; 2];
+    for edge in crack_edges(solid).iter().filter(|edge| edge.body == body) {
+        whole += edge.damaged_area();
+        if edges.nodes(edge.edge).iter().any(|&node| shared[node as usize]) {
+            there += edge.damaged_area();
+        }
+    }
+    (whole > 0.0).then(|| there / whole)
+}
+
 /// Mean size of the elements along the cracks of a body with a phase field [m]; none without one, or without a crack.
 pub fn size_along_cracks(solid: &Solid, body: usize) -> Option<f64> {
     let model = &solid.bodies[body];

@@ -7,7 +7,7 @@ pub(crate) mod separation;
 
 pub use crack::{
     CrackEdge, CrackPlane, Fracture, cost_of_bands, crack_edges, fracture, lost_to_bands, removed_count,
-    size_along_cracks,
+    share_at_borders, size_along_cracks,
 };
 pub use crack_network::{
     CrackCell, CrackMouth, CrackNetwork, CrackNetworkState, CrackSide, area_at, characteristic_length, present_volume,

@@ -31,9 +31,8 @@ pub struct SeparatedElement {
 /// A facet that faces a crack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparatedFacet {
-    /// Body it belongs to.
+    /// Body of the removed element before it, and that element.
     pub body: usize,
-    /// Removed element before it.
     pub removed: u32,
     /// Its share of the area of the crack without load, of which it is one of two faces [m²].
     pub area: f64,
@@ -83,7 +82,7 @@ fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet
     };
     let areas = vectors.iter().zip(&mean).map(projected);
     let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
-        body: facet.body,
+        body: facet.removed_body,
         removed: facet.removed,
         area: 0.5 * area,
     };
