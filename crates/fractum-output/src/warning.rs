@@ -161,6 +161,8 @@ codes! {
     Unsettled = "unsettled",
     /// Bands of a phase field that have become one.
     MergedBands = "merged-bands",
+    /// Bands of a phase field that end at nodes shared with another body.
+    CutBand = "cut-band",
     /// Elements too large for the strength at their rate of strain.
     RateLimited = "rate-limited",
     /// An accuracy that was asked for and not reached.

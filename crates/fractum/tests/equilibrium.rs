@@ -1,6 +1,9 @@
 //! Quasi-static runs as their user starts them: path and opening control, crack probes, the advice of `check`.
 
-use crate::common::{Workplace, history, run};
+use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::{Group, MshFormat};
+
+use crate::common::{Workplace, history, mesh_bytes, run};
 
 /// A bar with a weak slab in its middle, pulled apart at equilibrium.
 const BAR: &str = r#"fractum = 1
@@ -362,4 +365,99 @@ fn an_early_end_by_a_load_that_is_never_above_zero_is_told() {
         let told = format!("{}", run(&place, "out", "1")["warnings"]);
         assert_eq!(told.contains("was never above zero"), is_told, "{told}");
     }
+}
+
+/// A load that holds from the start does not fall with what the bar bears: the path ends where nothing more may be taken off it.
+#[test]
+fn a_path_below_no_load_at_all_ends_there_and_is_told() {
+    let pulled = "[[loads]]\ngroup = \"x+\"\nforce = { x = \"10 kN + 20 kN*t/1 s\" }\n\n[solver]\ncontrol = \"path\"\n";
+    let case = BAR
+        .replace("[[supports]]\ngroup = \"x+\"\ndisplacement = { x = \"0.4 mm*t/1 s\" }\n", "")
+        .replace("[solver]\n", pulled)
+        .replace("stop_when = { probe = \"load\", below = 0.2 }\n", "")
+        .replace("group = \"x+\", along = \"x\" }", "group = \"x-\", along = \"-x\" }");
+    let place = Workplace::new(&case);
+    let summary = run(&place, "out", "1");
+    let told = format!("{}", summary["warnings"]);
+    assert!(told.contains("gave-way") && told.contains("load factor below zero"), "{told}");
+    let rows = history(&place, "out", &["time", "load"]);
+    let below = rows.iter().filter(|row| row[0] < 0.0).count();
+    assert_eq!((below, rows.last().unwrap()[0] < 0.0), (1, true), "{rows:?}");
+    // The peak is the strength of the slab.
+    let peak = summary["probes"]["load"]["max"].as_f64().unwrap();
+    assert!((peak / (1.5e6 * 0.0144) - 1.0).abs() < 0.08, "{peak}");
+}
+
+/// A bar of a phase field that is weakest beside its middle, pulled apart.
+const PLATE: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+[materials.m]
+density = "2500 kg/m^3"
+young_modulus = "10 GPa"
+poisson_ratio = 0.2
+[materials.m.damage]
+tensile_strength = "2 MPa"
+fracture_energy = "40 J/m^2"
+regularisation = "phase-field"
+BODIES
+[[supports]]
+group = "x-"
+fix = "x"
+[[supports]]
+where = "x < 1 um && y < 1 um"
+fix = "y"
+[[supports]]
+group = "x+"
+displacement = { x = "0.1 mm*t/1 s" }
+[solver]
+kind = "static"
+end = "1 s"
+stop_when = { probe = "load", below = 0.001 }
+[[probes]]
+name = "load"
+reaction = { group = "x-", along = "-x" }
+[[probes]]
+name = "area"
+crack = { measure = "area" }
+"#;
+
+/// The field of a body ends at its border: a crack there takes half of the fracture energy, and is told.
+#[test]
+fn a_crack_of_a_phase_field_along_the_border_of_its_body_is_told() {
+    let whole = structured_rectangle([16, 8], [0.02, 0.01], None);
+    let mut halves = whole.clone();
+    let body = halves.groups.iter().position(|group| group.name == "body").unwrap();
+    let middle = |triangle: u32| {
+        halves.triangles[triangle as usize].iter().map(|&node| halves.nodes[node as usize].x).sum::<f64>() / 3.0
+    };
+    let (right, left) = halves.groups[body].triangles.iter().partition(|&&triangle| middle(triangle) > 0.01);
+    halves.groups[body].triangles = left;
+    let second = Group { name: "right".into(), tag: 99, triangles: right, ..halves.groups[body].clone() };
+    halves.groups.push(second);
+    let part = |name: &str, group: &str| {
+        format!(
+            "[[bodies]]\nname = \"{name}\"\nkind = \"solid\"\ngroup = \"{group}\"\nmaterial = \"m\"\nplane = \"stress\"\nthickness = \"10 mm\"\n\
+             strength_factor = \"0.9 + 0.01*abs(x - 9.4 mm)/1 mm\"\n"
+        )
+    };
+    let two = part("left", "body") + &part("rest", "right");
+    // Of the fracture energy of the section, 4 mJ, what damage has taken; of its area that of the crack.
+    let cost = |case: &str, bodies: &str, mesh: &fractum_mesh::Mesh| {
+        let place = Workplace::with_mesh(&case.replace("BODIES", bodies), &mesh_bytes(mesh, MshFormat::V4_1Binary));
+        let summary = run(&place, "out", "1");
+        let told = format!("{}", summary["warnings"]).contains("cut-band");
+        let area = summary["probes"]["area"]["final"].as_f64().unwrap() / 1e-4;
+        (summary["energy"]["damage"].as_f64().unwrap() / 4e-3, told, area)
+    };
+    let (one, is_told, area) = cost(PLATE, &part("bar", "body"), &whole);
+    println!("{one} {area}");
+    assert!((one - 0.95).abs() < 0.1 && !is_told && (area - 1.0).abs() < 1e-6, "{one} {is_told} {area}");
+    let (cut, is_told, _) = cost(PLATE, &two, &halves);
+    assert!(cut < 0.7 && is_told, "{cut} {is_told}");
+    // Both faces of a crack count, the one in the other body too.
+    let local = PLATE.replace("regularisation = \"phase-field\"\n", "");
+    let (taken, is_told, area) = cost(&local, &two, &halves);
+    println!("{taken} {area}");
+    assert!(taken > 0.75 && !is_told && (area - 1.0).abs() < 1e-6, "{taken} {is_told} {area}");
 }

@@ -56,6 +56,8 @@ use equilibrium::{AppliedForces, accept_equilibrium, forces_at_rest, no_equilibr
 use lead::Lead;
 use linear_system::LinearSystem;
 
+/// Share of the largest load factor below which a negative one is what rounding leaves.
+const BELOW_NONE: f64 = 1e-3;
 /// How far the most strained edge goes down its softening curve per step of a path: at first, at least and at most.
 const GROWTH: [f64; 3] = [0.05, 0.01, 0.25];
 /// The step that finds the onset of damage goes no further than this.
@@ -273,7 +275,13 @@ impl StaticSolver {
             Control::Opening(opening) => opening.of(&scene.solid.displacement) >= opening.end * (1.0 - 1e-12),
             Control::Time | Control::TimeThenPath | Control::Path => false,
         };
-        open || scene.clock.time >= self.settings.end * (1.0 - 1e-12) || self.has_used_up_its_steps()
+        let at_end = scene.clock.time >= self.settings.end * (1.0 - 1e-12);
+        open || at_end || self.has_used_up_its_steps() || self.has_given_way(scene)
+    }
+
+    /// Whether the path has come below no load at all: loads that hold from the start are more than what is left bears.
+    pub fn has_given_way(&self, scene: &Scene) -> bool {
+        scene.clock.time < -BELOW_NONE * self.settings.end
     }
 
     /// Whether it has found as many states of equilibrium as it may; steps of motion between them do not count.

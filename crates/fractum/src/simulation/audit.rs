@@ -94,6 +94,7 @@ impl Simulation {
         self.warn_of_single_nodes()?;
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
+        self.warn_of_cut_bands()?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
         self.warn_of_giving_way()?;
@@ -106,14 +107,20 @@ impl Simulation {
         })
     }
 
-    /// Warns of a bonded body that does not bear its loads.
+    /// Warns of bodies at rest that do not bear their loads.
     fn warn_of_giving_way(&mut self) -> Result<(), Failure> {
-        if !self.solver.has_given_way() {
+        if !self.solver.has_given_way(&self.scene) {
             return Ok(());
         }
+        let Some(body) = self.scene.bonded.bodies().first() else {
+            let text = "the loads that hold from the start are more than what has been left bears: the path of equilibrium has come to a load \
+                        factor below zero, and the run ends there";
+            let found = Warning::new(Code::GaveWay, self.instant(self.time()), text);
+            return self.warn(found.remedy("let loads grow from none, or move a support"));
+        };
+        let name = body.name.clone();
         let factor = self.time() / self.case.solver.end;
         let text = format!("it gave way under its loads at {} of them, and bears no more", percent(factor));
-        let name = &self.scene.bonded.bodies()[0].name;
         let found = Warning::new(Code::GaveWay, format!("body \"{name}\""), text);
         self.warn(
             found
@@ -201,6 +208,26 @@ impl Simulation {
         found.into_iter().try_for_each(|found| self.warn(found))
     }
 
+    /// Warns of cracks of a phase field along the border of its body.
+    fn warn_of_cut_bands(&mut self) -> Result<(), Failure> {
+        let solid = &self.scene.solid;
+        let bodies = (0..solid.body_count()).filter_map(|body| {
+            let share = cracks::share_at_borders(solid, body).filter(|share| *share > AT_BORDERS)?;
+            Some((&solid.body(body).name, share))
+        });
+        let found = bodies.map(|(name, share)| {
+            let text = format!(
+                "{} of its damage lies at nodes that it shares with another body, where its phase field ends: a crack along them takes down to half of its \
+                 fracture energy",
+                percent(share)
+            );
+            Warning::new(Code::CutBand, format!("body \"{name}\""), text)
+                .remedy("make one body of both where they are one material; else put [[interfaces]] between them, or take regularisation = \"none\"")
+        });
+        let found: Vec<Warning> = found.collect();
+        found.into_iter().try_for_each(|found| self.warn(found))
+    }
+
     /// Tells at which rates of strain edges began to break, where strength grows with them, and warns of elements too large for it.
     fn tell_rates(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
@@ -256,6 +283,8 @@ impl Simulation {
 const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
+/// Share of the damage of a phase field at the nodes of other bodies above which its cracks run along them.
+const AT_BORDERS: f64 = 0.2;
 /// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
 const MOSTLY_SINGLE: f64 = 0.5;
 const VISIBLY_SINGLE: f64 = 0.05;

@@ -88,6 +88,10 @@ impl EquilibriumRun {
         if self.moves() { scene.is_finished() } else { self.solver.is_finished(scene) }
     }
 
+    pub(super) fn has_given_way(&self, scene: &Scene) -> bool {
+        !self.moves() && self.solver.has_given_way(scene)
+    }
+
     pub(super) fn step(&mut self, scene: &mut Scene, phases: &mut Phases) -> Result<Advance, StepError> {
         match self.phase {
             Phase::Moving(interlude) => return self.move_on(scene, interlude, phases),

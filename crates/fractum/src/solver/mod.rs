@@ -200,9 +200,13 @@ impl Solver {
         if let Solver::Static(run) = self { run.iterations() } else { 0 }
     }
 
-    /// Whether a bonded body at rest has broken so far that it does not bear its loads.
-    pub(crate) fn has_given_way(&self) -> bool {
-        matches!(self, Solver::BondedStatic(run) if run.has_given_way())
+    /// Whether what is at rest has broken so far that it does not bear its loads.
+    pub(crate) fn has_given_way(&self, scene: &Scene) -> bool {
+        match self {
+            Solver::BondedStatic(run) => run.has_given_way(),
+            Solver::Static(run) => run.has_given_way(scene),
+            Solver::Explicit | Solver::Heat | Solver::Modes(_) => false,
+        }
     }
 
     /// How much work it was, in words.
