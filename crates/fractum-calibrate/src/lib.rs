@@ -33,7 +33,7 @@ pub mod strength_law;
 pub use calibrate::{Calibration, Request, calibrate, suitable_coordination};
 pub use error::CalibrateError;
 pub use inversion::{Inverted, RADIUS_RATIOS, invert};
-pub use prepare::{Beams, BondedBody, BondedMaterial, prepare};
+pub use prepare::{Beams, BondedBody, BondedMaterial, prepare, prepare_sample};
 pub use pull::StrengthCriterion;
 pub use sample::{Micro, Sample};
 pub use strength::Strength;

@@ -67,12 +67,19 @@ pub struct BondedBody {
 /// # Errors
 /// Those of bonding and calibration; a density that is not positive.
 pub fn prepare(packing: Packing, material: &BondedMaterial) -> Result<BondedBody, CalibrateError> {
+    prepare_sample(Sample::new(packing, material.coordination, material.convention)?, material)
+}
+
+/// The same for a packing that is bonded already, to the coordination that the material tells.
+///
+/// # Errors
+/// Those of calibration; a density that is not positive.
+pub fn prepare_sample(mut sample: Sample, material: &BondedMaterial) -> Result<BondedBody, CalibrateError> {
     let (young, poisson) = (material.young_modulus, material.poisson_ratio);
     if !(material.density.is_finite() && material.density > 0.0) {
         let expected = "a positive number of kilograms per cubic metre";
         return Err(CalibrateError::Material { what: "density", value: material.density, expected });
     }
-    let mut sample = Sample::new(packing, material.coordination, material.convention)?;
     let has_faces = sample.box_extents().is_some() || sample.cylinder_extents().is_some();
     let beams = match material.beams {
         Some(beams) => beams,

@@ -40,6 +40,14 @@ impl Sample {
     /// An unreachable coordination.
     pub fn new(packing: Packing, coordination: f64, convention: Convention) -> Result<Self, CalibrateError> {
         let network = bond(&packing, coordination, convention)?;
+        Sample::of_network(packing, network, convention)
+    }
+
+    /// A packing with bonds that are given.
+    ///
+    /// # Errors
+    /// Bonds that make no lattice.
+    pub fn of_network(packing: Packing, network: BondNetwork, convention: Convention) -> Result<Self, CalibrateError> {
         let mean_radius = packing.mean_radius();
         let section = BeamSection::new(1.0, 0.5 * mean_radius).map_err(DemError::from)?;
         let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;

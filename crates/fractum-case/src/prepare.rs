@@ -53,6 +53,7 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache, tell: &dyn Fn(&st
                         };
                         all.warnings.extend(made.doubts.into_iter().map(doubt));
                         all.timings.extend(made.timing);
+                        all.reads.extend(made.read.map(|told| (body.name.value.clone(), told)));
                         all.reports.push(made.report);
                         all.prepared.push(made.body);
                     }
@@ -81,6 +82,17 @@ fn bonded_request<'a>(
     let material = &case.materials[bonded.material];
     let packing = match &bonded.packing {
         PackingSource::File(file) => PackingRequest::File(&file.bytes),
+        PackingSource::Particles { file, unit, frame, species, shape, bond_gap } => PackingRequest::Particles {
+            file: ParticleFile {
+                bytes: &file.bytes,
+                unit: *unit,
+                velocity_unit: None,
+                frame: *frame,
+                species: species.as_deref(),
+            },
+            shape: shape.as_ref().map(|shape| shape_of(&shape.value)),
+            bond_gap: *bond_gap,
+        },
         PackingSource::Shape { shape, size, dispersion, seed, arrangement } => PackingRequest::Fill {
             shape: shape_of(&shape.value),
             size: size.value,
@@ -158,7 +170,7 @@ fn of_bonded(case: &Case, name: &Spanned<String>, bonded: &BondedBody, fault: &F
         (At::Material, _) => plain(&case.materials[bonded.material].name.place),
         (At::Coordination, _) => plain(bonded.coordination.as_ref().map_or(&name.place, |asked| &asked.place)),
         (At::Replaced, _) => bonded.replaces.as_ref().map_or_else(|| plain(&name.place), |solid| named(solid, fault)),
-        (At::File, PackingSource::File(file)) => named(&file.name, fault),
+        (At::File, PackingSource::File(file) | PackingSource::Particles { file, .. }) => named(&file.name, fault),
         (At::Size, PackingSource::Shape { size, .. }) => plain(&size.place),
         (At::Shape, PackingSource::Shape { shape, .. }) => plain(&shape.place),
         (At::Source, PackingSource::Shape { shape, .. }) => plain(match &shape.value {

@@ -43,7 +43,7 @@ pub use error::PackError;
 pub use grading::Grading;
 pub use insertion::insert;
 pub use isotropy::Isotropy;
-pub use network::{BondNetwork, Convention, bond};
+pub use network::{BondNetwork, Convention, bond, pairs_within};
 pub use packing::{Compaction, Packing};
 pub use regular::{Arrangement, regular};
 pub use stl::{read_stl, read_stl_facets};

@@ -74,6 +74,42 @@ pub fn bond(packing: &Packing, coordination: f64, convention: Convention) -> Res
     Ok(BondNetwork { pairs: kept, factor: high, coordination_all: all, coordination_interior: inside })
 }
 
+/// Pairs i < j, ascending, of spheres that are nearer to each other than a gap [m].
+pub fn pairs_within(packing: &Packing, gap: f64) -> Vec<[u32; 2]> {
+    let found = Neighbours::find(&packing.position, &packing.radius, 1.0, gap);
+    let after = |i: u32| found.of(i as usize).iter().filter(move |&&j| j > i).map(move |&j| [i, j]);
+    (0..packing.len() as u32).flat_map(after).collect()
+}
+
+impl BondNetwork {
+    /// Bonds that are given.
+    ///
+    /// - `pairs`: i < j, ascending, each once
+    pub fn of_pairs(packing: &Packing, pairs: Vec<[u32; 2]>) -> Self {
+        let on_wall = packing.on_wall();
+        let inside = on_wall.iter().filter(|on_wall| !**on_wall).count();
+        let ends = pairs.iter().flatten().filter(|&&i| !on_wall[i as usize]).count();
+        let ratio = |&[i, j]: &[u32; 2]| {
+            let (i, j) = (i as usize, j as usize);
+            (packing.position[i] - packing.position[j]).norm() / (packing.radius[i] + packing.radius[j])
+        };
+        BondNetwork {
+            factor: pairs.iter().map(ratio).fold(0.0, f64::max),
+            coordination_all: 2.0 * pairs.len() as f64 / packing.len() as f64,
+            coordination_interior: ends as f64 / inside as f64,
+            pairs,
+        }
+    }
+
+    /// Its coordination as a convention counts it; not a number where no particle is off the walls.
+    pub fn coordination(&self, convention: Convention) -> f64 {
+        match convention {
+            Convention::All => self.coordination_all,
+            Convention::Interior => self.coordination_interior,
+        }
+    }
+}
+
 /// Pairs i < j within `factor`, ascending, with their distance over R_i + R_j.
 fn candidates(packing: &Packing, factor: f64) -> (Vec<[u32; 2]>, Vec<f64>) {
     let found = Neighbours::find(&packing.position, &packing.radius, factor, 0.0);

@@ -41,6 +41,9 @@ pub struct Compaction {
     pub iterations: usize,
 }
 
+/// Gap to a wall over the radius below which spheres made elsewhere are on it.
+const ON_WALL: f64 = 0.1;
+
 /// First bytes of a packing file.
 const MAGIC: &[u8; 8] = b"fractPK1";
 
@@ -56,6 +59,25 @@ struct Header {
 }
 
 impl Packing {
+    /// Spheres made elsewhere, in the domain that they fill. On a wall are those that come nearer to it than a tenth of their radius.
+    ///
+    /// - `position`, `radius`: of each [m], as many of one as of the other
+    pub fn of_spheres(domain: Domain, position: Vec<Vec3>, radius: Vec<f64>) -> Self {
+        let names = domain.wall_names().iter();
+        let mut walls: Vec<(String, Vec<u32>)> = names.map(|name| ((*name).to_owned(), Vec::new())).collect();
+        for (i, (x, r)) in (0..).zip(position.iter().zip(&radius)) {
+            domain.walls_at(x, |wall, depth, _| {
+                if depth < (1.0 + ON_WALL) * r {
+                    walls[wall].1.push(i);
+                }
+            });
+        }
+        let (least, largest) = radius.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &r| (l.min(r), h.max(r)));
+        let mean = radius.iter().sum::<f64>() / radius.len() as f64;
+        let compaction = Compaction { coordination: 0.0, overlap: 0.0, contacts: 0, rattlers: 0, iterations: 0 };
+        Packing { domain, seed: 0, dispersion: (largest - least) / mean, position, radius, walls, compaction }
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.position.len()

@@ -33,6 +33,15 @@ pub struct BondedRequest<'a> {
 pub enum PackingRequest<'a> {
     /// The bytes of a packing made before.
     File(&'a [u8]),
+    /// Particles of a file.
+    Particles {
+        /// The file.
+        file: ParticleFile<'a>,
+        /// The shape that they fill; `None` = the box around them.
+        shape: Option<Shape<'a>>,
+        /// Gap below which two are joined [m]; `None` = the bonds of the file, or else those of the coordination.
+        bond_gap: Option<f64>,
+    },
     /// A shape to fill.
     Fill {
         /// The shape.

@@ -1,16 +1,19 @@
 //! Bonded bodies made ready: packed or read, bonded, calibrated.
 
 mod interfaces;
+mod own_particles;
 mod strengths;
 
 use std::time::Instant;
 
-use fractum_calibrate::{Beams, BondedMaterial, CalibrateError, Sample, prepare, suitable_coordination};
+use fractum_calibrate::{
+    Beams, BondedMaterial, CalibrateError, Sample, prepare, prepare_sample, suitable_coordination,
+};
 use fractum_mesh::{Mesh, topology};
 use fractum_output::warning::Code;
 use fractum_pack::{
-    Arrangement, Certificate, ClosedSurface, Convention, Domain, PackError, PackProgress, PackSize, PackSpec, Packing,
-    pack_certified, read_stl, regular,
+    Arrangement, BondNetwork, Certificate, ClosedSurface, Convention, Domain, PackError, PackProgress, PackSize,
+    PackSpec, Packing, pack_certified, read_stl, regular,
 };
 use fractum_scene::BondFracture;
 use serde::Serialize;
@@ -22,6 +25,7 @@ use crate::body::PreparedBody;
 use crate::cache::{Cache, key};
 use crate::region::{Region, Space, region};
 pub use interfaces::InterfaceReport;
+use own_particles::OwnParticles;
 pub use strengths::FoundStrengths;
 
 /// Contacts per particle at which compaction stops.
@@ -89,6 +93,8 @@ pub struct MadeBody {
     pub doubts: Vec<Doubt>,
     /// What took how long, for the log.
     pub timing: Option<String>,
+    /// What was read, where its particles come from a file.
+    pub read: Option<String>,
 }
 
 /// Makes a bonded body ready.
@@ -125,6 +131,9 @@ struct BeamsKey {
     convention: Convention,
     young_modulus: f64,
     poisson_ratio: f64,
+    /// Bonds that are given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pairs: Option<Vec<[u32; 2]>>,
 }
 
 struct Maker<'a> {
@@ -138,17 +147,26 @@ impl Maker<'_> {
     fn make(&self) -> Result<MadeBody, Fault> {
         let start = Instant::now();
         let region = self.region()?;
-        let (packing, packing_from) = self.packing(region.as_ref())?;
+        let (packing, packing_from, own) = match &self.asked.packing {
+            PackingRequest::Particles { file, shape, bond_gap } => {
+                let (packing, own) = self.own_particles(file, shape.as_ref(), *bond_gap)?;
+                (packing, Origin::Given, own)
+            }
+            _ => {
+                let (packing, from) = self.packing(region.as_ref())?;
+                (packing, from, OwnParticles::default())
+            }
+        };
         let packed = Instant::now();
         let mut doubts = Vec::new();
         if self.arrangement() == Arrangement::Random {
             doubts.extend(self.check_packing(&packing, packing_from)?);
         }
         if self.asked.law != BondLawKind::CohesiveBeam {
-            let (body, report) = self.make_interfaces(packing, packing_from, region)?;
-            return Ok(MadeBody { body, report, doubts, timing: None });
+            let (body, report) = self.make_interfaces(packing, packing_from, region, own.pairs)?;
+            return Ok(MadeBody { body, report, doubts, timing: None, read: own.read });
         }
-        let (made, beams_from, coordination) = self.bond(packing)?;
+        let (made, beams_from, coordination) = self.bond(packing, own.pairs)?;
         let faces = self.material().faces;
         let fracture = match &self.material().strength {
             Some(strength) => Some(self.strengths(strength, &made.sample, made.beams.micro, coordination)?),
@@ -184,7 +202,7 @@ impl Maker<'_> {
             domain: Some(made.sample.packing.domain),
             replaced: region.map_or_else(Vec::new, |region| region.elements),
         };
-        Ok(MadeBody { body, report, doubts, timing: Some(timing) })
+        Ok(MadeBody { body, report, doubts, timing: Some(timing), read: own.read })
     }
 
     /// Says what is being done, for what takes long.
@@ -207,18 +225,30 @@ impl Maker<'_> {
     }
 
     /// Bonds a packing with beams that are given, kept or found now, to the coordination that it returns.
-    fn bond(&self, packing: Packing) -> Result<(fractum_calibrate::BondedBody, Origin, f64), Fault> {
+    ///
+    /// - `pairs`: bonds that are given
+    fn bond(
+        &self,
+        packing: Packing,
+        pairs: Option<Vec<[u32; 2]>>,
+    ) -> Result<(fractum_calibrate::BondedBody, Origin, f64), Fault> {
         let (material, convention) = (self.material(), self.asked.convention);
-        let coordination = match self.asked.coordination {
-            Some(coordination) => coordination,
-            None => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
+        let network = pairs.map(|pairs| BondNetwork::of_pairs(&packing, pairs));
+        let coordination = match (&network, self.asked.coordination) {
+            (Some(network), _) => network.coordination(convention),
+            (None, Some(coordination)) => coordination,
+            (None, None) => suitable_coordination(material.poisson_ratio, convention).map_err(|e| self.wrong(&e))?,
         };
+        if material.beams.is_none() {
+            self.may_be_calibrated(&packing)?;
+        }
         let beams_key = key(&BeamsKey {
             packing: xxhash_rust::xxh3::xxh3_128(&packing.to_bytes()),
             coordination,
             convention,
             young_modulus: material.young_modulus,
             poisson_ratio: material.poisson_ratio,
+            pairs: network.as_ref().map(|network| network.pairs.clone()),
         });
         let (beams, from) = match material.beams.map(Beams::given) {
             Some(beams) => (Some(beams), Origin::Given),
@@ -238,7 +268,13 @@ impl Maker<'_> {
         if from == Origin::Made {
             self.tell("finding beams that give the material its Young's modulus and Poisson's ratio");
         }
-        let made = prepare(packing, &wanted).map_err(|error| self.wrong(&error))?;
+        let made = match network {
+            Some(network) => {
+                Sample::of_network(packing, network, convention).and_then(|sample| prepare_sample(sample, &wanted))
+            }
+            None => prepare(packing, &wanted),
+        };
+        let made = made.map_err(|error| self.wrong(&error))?;
         if from == Origin::Made {
             // Serialising plain numbers into memory has no way to fail.
             self.cache.keep("beams", beams_key, &postcard::to_stdvec(&made.beams).unwrap_or_default());
@@ -268,7 +304,7 @@ impl Maker<'_> {
     fn arrangement(&self) -> Arrangement {
         match &self.asked.packing {
             PackingRequest::Fill { arrangement, .. } => *arrangement,
-            PackingRequest::File(_) => Arrangement::Random,
+            PackingRequest::File(_) | PackingRequest::Particles { .. } => Arrangement::Random,
         }
     }
 
@@ -290,8 +326,13 @@ impl Maker<'_> {
     fn packing(&self, region: Option<&Region>) -> Result<(Packing, Origin), Fault> {
         let (shape, size, dispersion, seed) = match &self.asked.packing {
             PackingRequest::File(bytes) => {
-                let read = Packing::from_bytes(bytes).map_err(|error| Fault::new(At::File, error));
+                let read = Packing::from_bytes(bytes).map_err(|error| {
+                    Fault::new(At::File, error).remedy("particles of other programs are read by the key file")
+                });
                 return read.map(|packing| (packing, Origin::Given));
+            }
+            PackingRequest::Particles { .. } => {
+                return Err(Fault::new(At::File, "holds particles, and no packing"));
             }
             PackingRequest::Fill { shape, size, dispersion, seed, .. } => (shape, *size, *dispersion, *seed),
         };

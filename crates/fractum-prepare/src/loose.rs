@@ -72,7 +72,11 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         fracture: None,
         replaced: Vec::new(),
     };
-    Ok(MadeParticles { body, read: file.map(|file| file.told()) })
+    let read = file.map(|file| match file.bonds.len() {
+        0 => file.told(),
+        count => format!("{}; without its {count} bonds", file.told()),
+    });
+    Ok(MadeParticles { body, read })
 }
 
 /// Particles that may be asked for.

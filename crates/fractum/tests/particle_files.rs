@@ -119,3 +119,106 @@ fn wrong_files_of_particles_are_explained() {
     let ended = Workplace::new(&cloud).fractum(&["check", "case.toml"]);
     assert!(ended.code == Some(1) && ended.stderr.contains("bodies[0].species"), "{}", ended.stderr);
 }
+
+/// A bar of touching balls in a cubic grid, 12 x 4 x 4 of 1 mm, as LAMMPS data, with bonds along x alone if asked.
+fn grid(bonds: bool) -> String {
+    let (mut atoms, mut pairs) = (String::new(), String::new());
+    let mut count = 0;
+    for x in 0..12 {
+        for (y, z) in (0..4).flat_map(|y| (0..4).map(move |z| (y, z))) {
+            count += 1;
+            let at = [x, y, z].map(|k| f64::from(k) + 0.5);
+            atoms += &format!("{count} 1 1.0 2500 {} {} {}\n", at[0], at[1], at[2]);
+            if bonds && x > 0 {
+                pairs += &format!("{count} 1 {} {count}\n", count - 16);
+            }
+        }
+    }
+    let head = format!("a grid\n\n{count} atoms\n\nAtoms # sphere\n\n{atoms}");
+    if bonds { format!("{head}\nBonds\n\n{pairs}") } else { head }
+}
+
+/// The bar is pulled at its ends.
+const PULLED: &str = r#"fractum = 1
+title = "A bar of own particles"
+[materials.m]
+density = "2500 kg/m^3"
+young_modulus = "1 GPa"
+poisson_ratio = 0.1
+BONDS
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "m"
+file = "bar.data"
+unit = "mm"
+MORE
+[[supports]]
+group = "bar.x-"
+fix = "x"
+[[supports]]
+where = "x < 0.6 mm"
+group = "bar"
+fix = "yz"
+fix_rotation = "xyz"
+[[supports]]
+group = "bar.x+"
+displacement = { x = "1 um*t/1 s" }
+[solver]
+kind = "static"
+end = "1 s"
+[[probes]]
+name = "pull"
+reaction = { group = "bar.x+", along = "x" }
+"#;
+
+fn bar(bonds: &str, more: &str, content: &str) -> Workplace {
+    let place = Workplace::new(&PULLED.replace("BONDS", bonds).replace("MORE", more));
+    fs::write(place.path("bar.data"), content).unwrap();
+    place
+}
+
+const BEAMS: &str =
+    "bonds = { coordination = 6, convention = \"interior\", radius_ratio = 0.5, young_modulus = \"2 GPa\" }";
+
+#[test]
+fn a_bonded_body_of_own_particles_has_the_stiffness_of_its_bonds() {
+    // Eleven bonds of 1 mm along each of sixteen rows: EA/L with beams of radius 0.25 mm.
+    let right = 16.0 * 2e9 * std::f64::consts::PI * 0.25e-3f64.powi(2) / 11e-3 * 1e-6;
+    for (more, bonds, words) in [
+        ("", true, "with the 176 bonds of the file"),
+        ("bond_gap = \"0.1 mm\"", false, "464 bonds across gaps below 100 µm"),
+        (
+            "shape = \"box\"\nsize = [\"12 mm\", \"4 mm\", \"4 mm\"]\nbond_gap = \"0.1 mm\"",
+            true,
+            "without the 176 bonds of the file",
+        ),
+    ] {
+        let place = bar(BEAMS, more, &grid(bonds));
+        let told = place.fractum(&["check", "case.toml"]);
+        assert!(told.stdout.contains(words) && told.stdout.contains("52 %"), "{} {}", told.stdout, told.stderr);
+        let one = run(&place, "one", "1");
+        let pull = one["probes"]["pull"]["final"].as_f64().unwrap();
+        assert!((pull / right - 1.0).abs() < 1e-6, "{words}: {pull} N for {right}");
+        let two = run(&place, "two", "2");
+        assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
+    }
+}
+
+#[test]
+fn a_bonded_body_of_own_particles_that_cannot_be_is_explained() {
+    let pair = "two\n\n2 atoms\n\nAtoms # sphere\n\n1 1 1.0 2500 0 0 0\n2 1 1.0 2500 1 0 0\n\nBonds\n\n1 1 1 2\n";
+    let far = grid(true).replace("1 1 1 17\n", "") + "9 1 1 192\n";
+    for (bonds, more, content, words) in [
+        ("", "", pair, "its 2 particles are too few to find beams"),
+        (BEAMS, "", &pair.replace("1 0 0\n\nB", "9 9 9\n\nB"), "of the box around them"),
+        (BEAMS, "", &far, "beyond twice their radii"),
+        (BEAMS, "bond_gap = \"0.1 mm\"\ncoordination = 6", &grid(true), "bodies[0].coordination"),
+        (BEAMS, "shape = \"sphere\"\nradius = \"3 mm\"", &grid(true), "outside of the shape"),
+        (BEAMS, "particles = 500", &grid(true), "bodies[0].particles"),
+    ] {
+        let ended = bar(bonds, more, content).fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{words}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
+}

@@ -113,7 +113,7 @@ fn check_names(context: &mut Context<'_>) {
             PackingSource::Shape { shape, .. } => {
                 matches!(&shape.value, BondedShape::Group(group) if group.value == name)
             }
-            PackingSource::File(_) => false,
+            PackingSource::Particles { .. } | PackingSource::File(_) => false,
         },
         BodyKind::Particles(_) => false,
     };

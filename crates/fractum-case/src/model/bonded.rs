@@ -54,6 +54,21 @@ impl BondedBody {
 pub enum PackingSource {
     /// A packing made before.
     File(FileContent),
+    /// Particles of a file.
+    Particles {
+        /// The file.
+        file: FileContent,
+        /// Length of its unit [m].
+        unit: f64,
+        /// Its frame, from 0 on; `None` = the last one.
+        frame: Option<u64>,
+        /// Type of the particles that are taken; `None` = all.
+        species: Option<String>,
+        /// The shape that they fill; `None` = the box around them.
+        shape: Option<Spanned<BondedShape>>,
+        /// Gap below which two are joined [m].
+        bond_gap: Option<f64>,
+    },
     /// A shape to fill.
     Shape {
         /// The shape, with its place.

@@ -10,6 +10,7 @@ use crate::model::{BondLawKind, BondedBody, BondedShape, Bonds, FileContent, Mat
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{condition_of, initial_velocity, point};
+use crate::tree::Value;
 use crate::unit::Dimension;
 use crate::{Choice, Diagnostic, Field, Place, Spanned};
 
@@ -128,17 +129,24 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
         {
             table.refuse(key, "beside a packing made before");
         }
-        for key in ["dispersion", "seed", "arrangement"] {
+        for key in ["dispersion", "seed", "arrangement"].into_iter().chain(FILE_KEYS) {
             table.refuse(key, "beside a packing made before");
         }
         return file(table, "packing").map(PackingSource::File);
+    }
+    let is_stl = table.peek("shape").is_some_and(|node| matches!(&node.value, Value::Text(text) if text == "stl"));
+    if table.has("file") && !is_stl {
+        return particles(table);
+    }
+    for key in FILE_KEYS {
+        table.refuse(key, "without a file of particles");
     }
     let kinds =
         [Kind::Box, Kind::Cylinder, Kind::Sphere, Kind::Group, Kind::Stl].into_iter().zip(SHAPES).map(|(k, n)| (n, k));
     let kinds: Vec<(&'static str, Kind)> = kinds.collect();
     let kind = table.one_of("shape", &kinds).spanned().required();
     let shape = match &kind {
-        Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
+        Some(kind) => shape(table, kind.value, &[]).map(|shape| Spanned::new(shape, kind.place.clone())),
         None => {
             table.pass_over(&["point", "size", "length", "radius", "group", "file", "unit"]);
             None
@@ -163,9 +171,58 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
     Some(PackingSource::Shape { shape: shape?, size: size?, dispersion: dispersion?, seed: seed?, arrangement })
 }
 
+/// Keys of a file of particles.
+const FILE_KEYS: [&str; 3] = ["frame", "species", "bond_gap"];
+
+/// Particles of a file, and the shape that they fill.
+fn particles(table: &Table<'_>) -> Option<PackingSource> {
+    for key in ["particles", "particle_radius", "dispersion", "seed", "arrangement", "replaces"] {
+        table.refuse(key, "beside a file of particles");
+    }
+    let shape = match table.has("shape") {
+        true => {
+            let kinds = [Kind::Box, Kind::Cylinder, Kind::Sphere].into_iter().zip(SHAPES);
+            let kinds: Vec<(&'static str, Kind)> = kinds.map(|(kind, name)| (name, kind)).collect();
+            let kind = table.one_of("shape", &kinds).spanned().given();
+            kind.and_then(|kind| {
+                let shape = shape(table, kind.value, &["file", "unit"])?;
+                Some(Some(Spanned::new(shape, kind.place.clone())))
+            })
+        }
+        false => {
+            for key in ["point", "size", "length", "radius", "group"] {
+                table.refuse(key, "without a shape");
+            }
+            Some(None)
+        }
+    };
+    let file = file(table, "file");
+    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    let frame = optional(table, "frame", |name| frame(table, name));
+    let species = optional(table, "species", |name| table.text(name).given());
+    let bond_gap = optional(table, "bond_gap", |name| table.quantity(name).positive().given());
+    if table.has("bond_gap") {
+        table.refuse("coordination", "beside bond_gap, which decides about bonds");
+    }
+    Some(PackingSource::Particles {
+        file: file?,
+        unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)),
+        frame: frame?,
+        species: species?,
+        shape: shape?,
+        bond_gap: bond_gap?,
+    })
+}
+
+/// The number of a frame of a file.
+pub(super) fn frame(table: &Table<'_>, key: &'static str) -> Option<u64> {
+    table.integer(key).check(|frame| *frame < 1_000_000_000, "a number of a frame, from 0 on").given()
+}
+
 pub(super) const DISPERSION_RANGE: &str = "from 0 to 1 (0.25 is usual; packings below 0.15 tend to order)";
 
-fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
+/// - `beside`: keys that are not the shape's
+fn shape(table: &Table<'_>, kind: Kind, beside: &[&str]) -> Option<BondedShape> {
     let name = SHAPES[kind as usize];
     let takes: &[&str] = match kind {
         Kind::Box => &["point", "size"],
@@ -175,7 +232,7 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<BondedShape> {
         Kind::Stl => &["file", "unit"],
     };
     for key in ["point", "size", "length", "radius", "group", "file", "unit"] {
-        if !takes.contains(&key) {
+        if !takes.contains(&key) && !beside.contains(&key) {
             table.refuse(key, &format!("on the shape \"{name}\""));
         }
     }

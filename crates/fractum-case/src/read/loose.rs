@@ -2,7 +2,7 @@
 
 use fractum_math::Vec3;
 
-use super::bonded::{DISPERSION_RANGE, file, groups};
+use super::bonded::{DISPERSION_RANGE, file, frame, groups};
 use super::{sizes, unit};
 use crate::model::{Amount, LooseBody, LooseSource, Region};
 use crate::reader::Table;
@@ -49,10 +49,7 @@ fn from_file(table: &Table<'_>) -> Option<LooseSource> {
     if table.has("velocity_unit") {
         table.refuse("initial_velocity", "beside velocity_unit, which takes the velocities of the file");
     }
-    let frame = optional(table, "frame", |name| {
-        let frame = table.integer(name).check(|frame| *frame < 1_000_000_000, "a number of a frame, from 0 on");
-        frame.given()
-    });
+    let frame = optional(table, "frame", |name| frame(table, name));
     let species = optional(table, "species", |name| table.text(name).given());
     Some(LooseSource::File {
         file: file?,

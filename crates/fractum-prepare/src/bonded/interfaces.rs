@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use fractum_calibrate::{CalibrateError, Sample};
 use fractum_dem::{CrackFaces, LocalBond, Particles};
-use fractum_pack::Packing;
+use fractum_pack::{BondNetwork, Packing};
 use fractum_scene::BondFracture;
 
 use super::{BondedReport, Joints, Maker, Origin};
@@ -26,16 +26,26 @@ pub struct InterfaceReport {
 
 impl Maker<'_> {
     /// A body whose bonds are interfaces: their numbers are those of the material.
+    ///
+    /// - `pairs`: bonds that are given
     pub(super) fn make_interfaces(
         &self,
         packing: Packing,
         packing_from: Origin,
         region: Option<Region>,
+        pairs: Option<Vec<[u32; 2]>>,
     ) -> Result<(PreparedBody, BondedReport), Fault> {
         let arrangement = self.arrangement();
         let usual = arrangement.neighbours().unwrap_or(COORDINATION);
         let coordination = self.asked.coordination.unwrap_or(usual);
-        let mut sample = Sample::new(packing, coordination, self.asked.convention).map_err(|e| self.wrong(&e))?;
+        let sample = match pairs {
+            Some(pairs) => {
+                let network = BondNetwork::of_pairs(&packing, pairs);
+                Sample::of_network(packing, network, self.asked.convention)
+            }
+            None => Sample::new(packing, coordination, self.asked.convention),
+        };
+        let mut sample = sample.map_err(|e| self.wrong(&e))?;
         sample.fraction = arrangement.fraction().unwrap_or(sample.fraction);
         let replaced = region.map_or_else(Vec::new, |region| region.elements);
         let material = self.material();

@@ -47,7 +47,6 @@ pub(super) fn read(text: &str) -> Result<Content, Wrong> {
     let mut content = Content { format: "the section Atoms of a LAMMPS data file", ..Content::default() };
     let (mut section, mut style) = ("", None);
     let mut motions: HashMap<i64, ([f64; 3], Option<[f64; 3]>)> = HashMap::new();
-    let mut bonds = 0usize;
     // The first line is a title.
     for (number, line) in lines(text).skip(1) {
         let (plain, comment) = line.split_once('#').map_or((line, None), |(plain, comment)| (plain, Some(comment)));
@@ -79,7 +78,14 @@ pub(super) fn read(text: &str) -> Result<Content, Wrong> {
                     _ => return Err(wrong()),
                 };
             }
-            "Bonds" => bonds += 1,
+            "Bonds" => {
+                let ends = [2, 3].map(|place| words.get(place).and_then(|word| word.parse::<i64>().ok()));
+                let [Some(first), Some(second)] = ends else {
+                    let expected = "number and type of a bond, and the numbers of two atoms";
+                    return Err(Wrong::at(number, format!("`{}`", line.trim()), expected));
+                };
+                content.bonds.push((number, [first, second]));
+            }
             _ => {}
         }
     }
@@ -94,9 +100,6 @@ pub(super) fn read(text: &str) -> Result<Content, Wrong> {
     }
     if style.is_none() {
         content.notes.push("no style beside Atoms: by the number of columns".to_owned());
-    }
-    if bonds > 0 {
-        content.notes.push(format!("without its {bonds} bonds"));
     }
     Ok(content)
 }

@@ -37,6 +37,8 @@ pub(crate) struct FileParticles {
     pub(crate) velocity: Vec<Vec3>,
     /// Angular velocities [1/s]; empty where there are none.
     pub(crate) spin: Vec<Vec3>,
+    /// Bonds i < j between them, ascending, each once.
+    pub(crate) bonds: Vec<[u32; 2]>,
     /// What the plan says of the file beside its format and the number of particles.
     pub(crate) notes: Vec<String>,
 }
@@ -79,6 +81,8 @@ struct Row {
 struct Content {
     format: &'static str,
     rows: Vec<Row>,
+    /// Bonds: lines, and numbers of their particles.
+    bonds: Vec<(usize, [i64; 2])>,
     notes: Vec<String>,
 }
 
@@ -143,7 +147,8 @@ fn in_order(rows: &mut [Row]) -> Result<(), String> {
 
 /// Particles in SI units.
 fn taken(content: Content, asked: &ParticleFile<'_>) -> Result<FileParticles, String> {
-    let Content { format, rows, mut notes } = content;
+    let Content { format, rows, bonds, mut notes } = content;
+    let bonds = between(&rows, &bonds, asked.species.is_some())?;
     if rows.is_empty() {
         return Err("holds no particle".to_owned());
     }
@@ -179,8 +184,31 @@ fn taken(content: Content, asked: &ParticleFile<'_>) -> Result<FileParticles, St
         radius: rows.iter().map(|row| row.radius * asked.unit).collect(),
         velocity,
         spin,
+        bonds,
         notes,
     })
+}
+
+/// Bonds as pairs of places in the list of particles.
+///
+/// - `chosen`: whether particles were left out, with their bonds
+fn between(rows: &[Row], bonds: &[(usize, [i64; 2])], chosen: bool) -> Result<Vec<[u32; 2]>, String> {
+    let mut pairs = Vec::with_capacity(bonds.len());
+    for (line, ends) in bonds {
+        let place = |id: i64| rows.binary_search_by_key(&Some(id), |row| row.id).ok().map(|place| place as u32);
+        match ends.map(place) {
+            [Some(first), Some(second)] if first != second => pairs.push([first.min(second), first.max(second)]),
+            [Some(_), Some(_)] => return Err(format!("line {line}: a bond of particle {} with itself", ends[0])),
+            _ if chosen => {}
+            [first, _] => {
+                let id = if first.is_none() { ends[0] } else { ends[1] };
+                return Err(format!("line {line}: a bond of particle {id}, which is not there"));
+            }
+        }
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    Ok(pairs)
 }
 
 /// Names of columns, and what of a particle they are.

@@ -27,7 +27,7 @@ fn group_of_other(body: &Body) -> Option<&str> {
                 BondedShape::Group(group) => group,
                 _ => return None,
             },
-            PackingSource::File(_) => return None,
+            PackingSource::Particles { .. } | PackingSource::File(_) => return None,
         },
         _ => return None,
     };
