@@ -191,6 +191,39 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
     case.bodies.iter().filter_map(doubt).collect()
 }
 
+/// A restitution of solids that meet each other or rigid bodies by springs: it holds for single nodes, and the bodies part faster.
+pub(super) fn rebounds(case: &Case) -> Vec<Diagnostic> {
+    let meets = |body: &Body| match &body.kind {
+        BodyKind::Solid(solid) => !solid.damage,
+        BodyKind::Rigid(_) => true,
+        BodyKind::Bonded(_) | BodyKind::Particles(_) => false,
+    };
+    // What is thrown or free; what is driven is told otherwise.
+    let flies = |body: &Body| match &body.kind {
+        BodyKind::Solid(solid) => solid.initial_velocity.iter().any(Option::is_some),
+        BodyKind::Rigid(rigid) => rigid.free_rotation || rigid.free.contains(&true),
+        _ => false,
+    };
+    let moves = case.solver.kind == SolverKind::Explicit;
+    if !moves || case.bodies.len() < 2 || !case.bodies.iter().all(meets) || !case.bodies.iter().any(flies) {
+        return Vec::new();
+    }
+    let doubt = |body: &Body| {
+        let BodyKind::Solid(_) = &body.kind else { return None };
+        let own = body.kind.surface(&case.materials);
+        if own.damping_ratio <= ContactParameters::default().damping_ratio {
+            return None;
+        }
+        let found = format!(
+            "= \"{}\": the damping ratio or restitution of its contact holds for single nodes: as a whole it parts almost as fast as it came",
+            body.name.value
+        );
+        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
+        Some(note.remedy("damp the solid by damping; restitution holds for particles"))
+    };
+    case.bodies.iter().filter_map(doubt).collect()
+}
+
 /// Where a rigid body that does not turn is during the run, from where it starts [m]; none where that depends on forces, or it stays.
 fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
     let pushed = rigid.servo.is_some()

@@ -269,7 +269,14 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     if bodies.is_none() && root.has("bodies") && !root.has("mesh") {
         return Some(None); // whether it is needed is not known
     }
+    let rigid = |body: &Body| matches!(body.kind, BodyKind::Rigid(_));
     let needed = bodies.is_none_or(|bodies| bodies.iter().any(meshed) || !bodies.iter().any(bonded));
+    if bodies.is_some_and(|bodies| !bodies.is_empty() && bodies.iter().all(|body| rigid(body) && !meshed(body))) {
+        let place = root.place_of("bodies");
+        let alone = Diagnostic::error(&place, ": all are rigid, and rigid bodies do not touch each other");
+        root.reader.note(alone.expected("a solid, bonded or particles body that they meet"));
+        return None;
+    }
     if !needed {
         root.refuse("mesh", "where no body is made of a mesh group");
         return Some(None);

@@ -230,3 +230,46 @@ fn only_solids_are_looked_at_for_their_distance_from_the_origin_and_with_all_the
     let said = said_of(BAR, &mesh);
     assert!(said.len() == 1 && said[0].contains("an edge of 1 mm"), "{said:?}");
 }
+
+#[test]
+fn a_velocity_that_tears_elements_at_once_is_told() {
+    let thrown = |speed: &str| format!("material = \"concrete\"\ninitial_velocity = {{ x = \"{speed}\" }}\n");
+    let step = "if(x > 20 cm, 40 m/s, 0 m/s)";
+    let told = format!("{:?}", said("material = \"concrete\"\n", &thrown(step), 0.4, 0.0));
+    assert!(["initial_velocity", "40 m/s", "fracture energy"].iter().all(|word| told.contains(word)), "{told}");
+    // Neither a turn of the whole nor a slow change tears anything.
+    for speed in ["if(x > 20 cm, 0.4 m/s, 0 m/s)", "1 m/s * x / 1 m", "40 m/s", "-100 m/s * y / 1 m"] {
+        let case = thrown(speed);
+        let turns = if speed.contains('y') { case.replace("\" }", "\", y = \"100 m/s * x / 1 m\" }") } else { case };
+        let all = said("material = \"concrete\"\n", &turns, 0.4, 0.0);
+        assert!(!format!("{all:?}").contains("fracture energy"), "{speed}: {all:?}");
+    }
+}
+
+#[test]
+fn a_restitution_that_holds_for_nodes_alone_is_told() {
+    let case = |restitution: &str, free: &str, damage: &str| {
+        let ball = format!(
+            "[[bodies]]\nname = \"ball\"\nkind = \"rigid\"\nshape = \"sphere\"\npoint = [\"20 cm\", \"6 cm\", \"20 cm\"]\nradius = \"5 cm\"\n{free}"
+        );
+        let contact = format!("poisson_ratio = 0.2\ncontact = {{ restitution = {restitution} }}\n");
+        let text = BAR
+            .replace("poisson_ratio = 0.2\n", &contact)
+            .replace("[[supports]]\ngroup = \"x+\"", &format!("{ball}[[supports]]\ngroup = \"x+\""));
+        let text = if damage.is_empty() {
+            text.replace(
+                "[materials.concrete.damage]\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n",
+                "",
+            )
+        } else {
+            text
+        };
+        let mesh = structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None);
+        format!("{:?}", said_of(&text, &mesh))
+    };
+    let free = "free = \"z\"\nmass = \"1 kg\"\ninitial_velocity = { z = \"-1 m/s\" }\n";
+    assert!(case("0.5", free, "").contains("holds for single nodes"), "{}", case("0.5", free, ""));
+    assert!(!case("0.95", free, "").contains("holds for single nodes"));
+    // Discrete elements of what breaks have it.
+    assert!(!case("0.5", free, "damage").contains("holds for single nodes"));
+}

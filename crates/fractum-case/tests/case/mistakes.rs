@@ -32,6 +32,18 @@ end = 1e-3
 "#;
 
 #[test]
+fn rigid_bodies_alone_are_told_what_is_missing() {
+    let ball = |name: &str, x: u8| {
+        format!(
+            "[[bodies]]\nname = \"{name}\"\nkind = \"rigid\"\nshape = \"sphere\"\npoint = [{x}, 0, 0]\nradius = 1\n"
+        )
+    };
+    let found = mistakes(&format!("fractum = 1\n{}{}[solver]\nend = 1e-3\n", ball("a", 0), ball("b", 5)));
+    let [only] = found.as_slice() else { panic!("{found:?}") };
+    assert!(only.contains("bodies: all are rigid, and rigid bodies do not touch each other"), "{only}");
+}
+
+#[test]
 fn each_mistake_about_a_bonded_body_has_one_clear_message() {
     assert_eq!(parse(BONDED, &[]).unwrap().mesh, None);
     let beams = "poisson_ratio = 0.23\nbonds = { coordination = 8, convention = \"all\", radius_ratio = 0.4, young_modulus = 1e9 }";
