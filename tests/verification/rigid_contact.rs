@@ -554,7 +554,7 @@ fn a_tool_that_leaps_presses_and_leaves_never_pulls() {
         let reach = match shape {
             Shape::HalfSpace => 0.0,
             Shape::Cuboid { half } => half[up],
-            Shape::Cylinder { radius, .. } | Shape::Ball { radius } => radius,
+            Shape::Cylinder { radius, .. } | Shape::Tube { radius, .. } | Shape::Ball { radius } => radius,
         };
         let middle = Vec3::new(0.52 * size, 0.5 * size, 0.0);
         let at = middle + axis * (1.0001 * size + reach - middle[up]);

@@ -12,6 +12,9 @@ use crate::DemError;
 use crate::fracture::LoadedBonds;
 use crate::fracture::criterion::BondLoad;
 
+/// Bits of the three displacements.
+pub(super) const ALL_AXES: u8 = 0b111;
+
 /// Solves after which the unbalanced forces are computed afresh, so that round-off does not add up.
 const REFRESH: usize = 32;
 
@@ -164,9 +167,9 @@ impl StaticBody {
         (particles.map(|i| size(&self.load(i))).sum::<f64>() + self.handed_over) / self.loads_at_start
     }
 
-    /// Particles that no support holds in any way.
-    pub(super) fn is_free(&self, particle: usize) -> bool {
-        self.supports.fixed[particle] == 0
+    /// Axes along which supports hold a particle, as bits.
+    pub(super) fn held_along(&self, particle: usize) -> u8 {
+        self.supports.fixed[particle] & ALL_AXES
     }
 
     /// Hands the forces from outside on a particle that nothing holds over to the nearest of those that are held, with the moment that

@@ -9,6 +9,7 @@ use constant::Constant;
 use state::Progress;
 pub use state::QuasiStaticState;
 
+use super::body::ALL_AXES;
 use super::{Dof6, Lattice, LatticeSupports, StaticBody, Tolerance};
 use crate::DemError;
 use crate::bond::BondGraph;
@@ -381,7 +382,7 @@ impl QuasiStatic {
         (point, stage)
     }
 
-    /// Hands loads on pieces that no support holds over to what is left, as long as they are few: loose particles of a pressed side, which press
+    /// Hands loads on pieces that supports do not hold along all axes over to what is left, as long as they are few: loose particles of a pressed side, which press
     /// on those behind them.
     fn hand_over_loose(&mut self) {
         let QuasiStatic { graph, body, constant, .. } = self;
@@ -391,10 +392,18 @@ impl QuasiStatic {
             return;
         }
         let parts = graph.parts();
-        let mut held = vec![false; parts.count];
         let count = parts.of.len();
-        (0..count).filter(|&i| !bodies[0].is_free(i)).for_each(|i| held[parts.of[i] as usize] = true);
-        let is_held = |i: usize| held[parts.of[i] as usize];
+        let (mut held, mut sizes) = (vec![0u8; parts.count], vec![0usize; parts.count]);
+        for (i, &part) in parts.of.iter().enumerate() {
+            held[part as usize] |= bodies[0].held_along(i);
+            sizes[part as usize] += 1;
+        }
+        let most = sizes.iter().copied().max().unwrap_or(0);
+        // What hangs together with most of the body may be held by the balance of its loads.
+        let is_held = |i: usize| {
+            let part = parts.of[i] as usize;
+            held[part] == ALL_AXES || sizes[part] == most
+        };
         let loose: Vec<usize> = (0..count).filter(|&i| !is_held(i)).collect();
         for body in bodies.into_iter().filter(|body| body.is_loaded()) {
             if body.share_of_loads(loose.iter().copied()) <= FEW {
@@ -695,5 +704,37 @@ mod tests {
             let held: f64 = (0..16).chain(n as u32 - 16..n as u32).map(reach).sum();
             assert!((virial / held - 1.0).abs() < 1e-6, "{virial} {held}");
         }
+    }
+
+    /// Statically determinate reactions do not feel that the load of a loose particle has gone on to the nearest one.
+    #[test]
+    fn the_load_of_a_loose_particle_goes_on_with_its_moment() {
+        let (position, pairs) = bar([5, 3, 3]);
+        let n = position.len();
+        let lattice = Lattice::new(&position, &pairs, BeamSection::new(1e9, 0.3).unwrap(), 0.5).unwrap();
+        let mut supports = LatticeSupports::none(n);
+        (0..9).chain(n - 9..n).for_each(|i| supports.set(i as u32, 0, 0.0));
+        // The middle of the bar and the particle beside it along y.
+        let (across, beside) = (22u32, 25u32);
+        [1, 2].into_iter().for_each(|axis| supports.set(across, axis, 0.0));
+        supports.set(beside, 2, 0.0);
+        // A corner, which a support holds along x alone.
+        let loose = 0;
+        let mut loads = vec![[0.0; 6]; n];
+        loads[loose] = [0.0, 2e3, 1e3, 0.0, 0.0, 0.0];
+        let tolerance = Tolerance { residual: 1e-8, ..Tolerance::default() };
+        let mut body = StaticBody::under_loads(lattice, supports, &loads, &vec![[0.0; 6]; n], tolerance).unwrap();
+        let reactions =
+            |body: &StaticBody| [body.reaction(across)[1], body.reaction(across)[2], body.reaction(beside)[2]];
+        let before = reactions(&body);
+        assert!((before[0] + 2e3).abs() < 1e-3 && (before[1] + before[2] + 1e3).abs() < 1e-3, "{before:?}");
+        let bonds = (0u32..).zip(&pairs).filter(|(_, pair)| pair.contains(&(loose as u32)));
+        bonds.for_each(|(bond, _)| body.break_bond(bond));
+        assert!(body.clone().solve().is_err());
+        body.hand_over(loose, |i| i != loose);
+        body.solve().unwrap();
+        let after = reactions(&body);
+        assert!(before.iter().zip(after).all(|(before, after)| (before - after).abs() < 1.0), "{before:?} {after:?}");
+        assert!((body.share_of_loads(std::iter::empty()) - 1.0).abs() < 1e-12);
     }
 }
