@@ -240,7 +240,7 @@ fn what_cannot_be_solved_from_break_to_break_says_why() {
             "velocity = { x = \"rate*t/1 us\" }",
             "does not move along x in proportion to time",
         ),
-        ("[solver]", "[[loads]]\ngravity = { z = \"-9.81 m/s^2*sin(t/1 s)\" }\n[solver]", "in proportion to time"),
+        ("[solver]", "[[loads]]\ngravity = { z = \"-9.81 m/s^2*sin(t/0.1 us)\" }\n[solver]", "in proportion to time"),
         ("kind = \"static\"", "kind = \"static\"\ncontrol = \"path\"", "from break to break"),
         ("coordination = 8", "coordination = 8\ninitial_velocity = { x = \"1 m/s\" }", "a body at rest"),
     ];

@@ -455,7 +455,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"",
             "kind = \"particles\"\nmaterial = \"steel\"",
-            "8:1: bodies[0] has neither shape nor file; expected a shape to fill with particles, or a file of x, y, z, radius",
+            "8:1: bodies[0] has neither shape nor file; expected a shape to fill with particles, or a file of particles",
         ),
     ];
     for (old, new, expected) in cases {

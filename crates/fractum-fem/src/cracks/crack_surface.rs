@@ -24,8 +24,9 @@ pub struct CrackFacet {
     pub body: usize,
     /// Element behind it.
     pub element: u32,
-    /// Removed element that was before it, and its body, which is another one where the crack runs along a border.
+    /// Removed element that was before it.
     pub removed: u32,
+    /// Body of the removed element: another one where the crack runs along a border.
     pub removed_body: usize,
     /// Nodes, counter-clockwise as seen from the crack; a side of a triangle repeats its second node.
     pub nodes: [u32; 3],

@@ -31,8 +31,9 @@ pub struct SeparatedElement {
 /// A facet that faces a crack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparatedFacet {
-    /// Body of the removed element before it, and that element.
+    /// Body of the removed element before it.
     pub body: usize,
+    /// Number of that element there.
     pub removed: u32,
     /// Its share of the area of the crack without load, of which it is one of two faces [m²].
     pub area: f64,
