@@ -3,17 +3,16 @@ use rayon::prelude::*;
 
 use crate::{CHUNK, sum_chunks};
 
+/// A linear operator: one vector of `N` components for each.
+pub type Operator<'a, const N: usize> = dyn FnMut(&[SVector<f64, N>]) -> Vec<SVector<f64, N>> + 'a;
+
 /// Largest eigenvalue of a symmetric operator by the Lanczos process, from below; without convergence to wait for, as some
 /// tens of steps find it to well within two per cent where it stands for the highest frequency of a body.
 ///
 /// - `count`: vectors of `N` components that the operator takes
 /// - `steps`: products with it, at most
 /// - `apply`: the operator; it gives one vector per vector
-pub fn largest_eigenvalue<const N: usize>(
-    count: usize,
-    steps: usize,
-    apply: &mut dyn FnMut(&[SVector<f64, N>]) -> Vec<SVector<f64, N>>,
-) -> f64 {
+pub fn largest_eigenvalue<const N: usize>(count: usize, steps: usize, apply: &mut Operator<'_, N>) -> f64 {
     type Vectors<const N: usize> = Vec<SVector<f64, N>>;
     let norm = |v: &Vectors<N>| sum_chunks(v.len(), |i| v[i].norm_squared()).sqrt();
     let mut q: Vectors<N> = (0..count).map(start_vector).collect();

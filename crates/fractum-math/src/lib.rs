@@ -24,7 +24,7 @@ pub use fractum_kernels::{
 };
 
 pub use connected::{Connected, connected, numbered_parts};
-pub use lanczos::largest_eigenvalue;
+pub use lanczos::{Operator, largest_eigenvalue};
 pub use ragged::Ragged;
 pub use reduce::{CHUNK, sum_chunks};
 pub use rotation::{angle_between, rotation_between, rotation_by, rotation_vector};

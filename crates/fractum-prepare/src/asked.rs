@@ -5,8 +5,6 @@ use fractum_dem::{FractureCriterion, LocalBond};
 use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention, Domain, Grading};
 
-use crate::particle_file::ParticleFile;
-
 /// A bonded body to be made.
 #[derive(Clone, Debug)]
 pub struct BondedRequest<'a> {
@@ -101,6 +99,21 @@ pub struct LooseRequest<'a> {
     pub density: f64,
     /// Young's modulus [Pa], > 0.
     pub young_modulus: f64,
+}
+
+/// What is taken of a file of particles.
+#[derive(Clone, Copy, Debug)]
+pub struct ParticleFile<'a> {
+    /// Content of the file.
+    pub bytes: &'a [u8],
+    /// Length of its unit [m].
+    pub unit: f64,
+    /// Its unit of velocity [m/s]; `None` = velocities and spins are not taken.
+    pub velocity_unit: Option<f64>,
+    /// Frame of a file that has several, from 0 on; `None` = the last one.
+    pub frame: Option<u64>,
+    /// Type, or species, of the particles that are taken; `None` = all.
+    pub species: Option<&'a str>,
 }
 
 /// Where loose particles come from.

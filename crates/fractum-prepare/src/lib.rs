@@ -28,7 +28,7 @@ mod region;
 
 pub use asked::{
     Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces,
-    LooseFill, LooseRequest, PackingRequest, ParticleSize, Region, Shape, graded_count,
+    LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Region, Shape, graded_count,
 };
 pub use body::PreparedBody;
 pub use bonded::{
@@ -37,4 +37,3 @@ pub use bonded::{
 pub use cache::Cache;
 pub use fractum_calibrate::Micro;
 pub use loose::{MadeParticles, prepare_loose};
-pub use particle_file::ParticleFile;

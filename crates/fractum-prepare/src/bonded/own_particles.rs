@@ -5,8 +5,8 @@ use fractum_output::number::quantity;
 use fractum_pack::{Convention, Domain, Packing, pairs_within};
 
 use super::Maker;
-use crate::asked::{At, Fault, Shape};
-use crate::particle_file::{self, ParticleFile};
+use crate::asked::{At, Fault, ParticleFile, Shape};
+use crate::particle_file;
 
 /// Share of the box around them that particles fill at least, if they fill a box at all: that of a loose bed is 0.55, and walls take from it.
 const FILLS_A_BOX: f64 = 0.45;

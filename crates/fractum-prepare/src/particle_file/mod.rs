@@ -7,22 +7,7 @@ mod xyz;
 
 use fractum_math::Vec3;
 
-use crate::asked::{At, Fault};
-
-/// What is taken of a file of particles.
-#[derive(Clone, Copy, Debug)]
-pub struct ParticleFile<'a> {
-    /// Content of the file.
-    pub bytes: &'a [u8],
-    /// Length of its unit [m].
-    pub unit: f64,
-    /// Its unit of velocity [m/s]; `None` = velocities and spins are not taken.
-    pub velocity_unit: Option<f64>,
-    /// Frame of a file that has several, from 0 on; `None` = the last one.
-    pub frame: Option<u64>,
-    /// Type, or species, of the particles that are taken; `None` = all.
-    pub species: Option<&'a str>,
-}
+use crate::asked::{At, Fault, ParticleFile};
 
 /// Particles as a file has them, in the order of their numbers there.
 #[derive(Clone, Debug, Default)]
