@@ -188,23 +188,25 @@ fn search_blocks(
 
 // The parallel loops stand apart from the laws, so that they are compiled once and not for each of them.
 
+/// What is found in a block of stresses, by its number.
+type Search<'a> = dyn Fn((usize, &mut [Sym3])) -> BlockSearch + Sync + 'a;
+/// Whether something holds for a block of bounds and volumes.
+type Holds<'a> = dyn Fn(&[[f64; 2]], &[f64]) -> bool + Sync + 'a;
+/// Fills a block from virials and volumes, and says whether something was found.
+type Fill<'a> = dyn Fn(&mut [bool], &[Sym3], &[f64]) -> bool + Sync + 'a;
+
 /// What is found in each block of stresses.
-fn blocks_of(stress: &mut [Sym3], of_block: &(dyn Fn((usize, &mut [Sym3])) -> BlockSearch + Sync)) -> Vec<BlockSearch> {
+fn blocks_of(stress: &mut [Sym3], of_block: &Search<'_>) -> Vec<BlockSearch> {
     stress.par_chunks_mut(BLOCK).enumerate().map(of_block).collect()
 }
 
 /// Whether something holds for a block of bounds and volumes.
-fn any_block(bounds: &[[f64; 2]], volume: &[f64], holds: &(dyn Fn(&[[f64; 2]], &[f64]) -> bool + Sync)) -> bool {
+fn any_block(bounds: &[[f64; 2]], volume: &[f64], holds: &Holds<'_>) -> bool {
     bounds.par_chunks(BLOCK).zip(volume.par_chunks(BLOCK)).any(|(bounds, volume)| holds(bounds, volume))
 }
 
 /// Fills all blocks, whatever was found in others; whether one of them found something.
-fn fill_blocks(
-    reaching: &mut [bool],
-    virials: &[Sym3],
-    volume: &[f64],
-    fill: &(dyn Fn(&mut [bool], &[Sym3], &[f64]) -> bool + Sync),
-) -> bool {
+fn fill_blocks(reaching: &mut [bool], virials: &[Sym3], volume: &[f64], fill: &Fill<'_>) -> bool {
     let blocks = reaching.par_chunks_mut(BLOCK).zip(virials.par_chunks(BLOCK)).zip(volume.par_chunks(BLOCK));
     blocks
         .map(|((reaching, virials), volume)| fill(reaching, virials, volume))
