@@ -26,8 +26,6 @@ pub struct CrackFacet {
     pub element: u32,
     /// Removed element that was before it.
     pub removed: u32,
-    /// Body of the removed element: another one where the crack runs along a border.
-    pub removed_body: usize,
     /// Nodes, counter-clockwise as seen from the crack; a side of a triangle repeats its second node.
     pub nodes: [u32; 3],
     /// Present centre [m].
@@ -43,7 +41,7 @@ pub struct CrackFacet {
 /// All facets exposed by removal.
 #[derive(Clone, Debug, Default)]
 pub struct CrackSurface {
-    /// Body by body, in the order of the removed elements; then those of other bodies at borders, likewise.
+    /// Body by body, in the order of the removed elements.
     pub facets: Vec<CrackFacet>,
     /// Facets that share an edge with each facet (an end, in the plane), ascending.
     pub neighbours: Ragged,
@@ -57,13 +55,12 @@ impl CrackSurface {
 
     /// The surface that the removal of elements has opened, at the present displacements.
     pub fn of(solid: &Solid) -> Self {
-        let (mut facets, mut open) = (Vec::new(), Vec::new());
+        let mut facets = Vec::new();
         for (body, model) in solid.bodies.iter().enumerate() {
             for removed in (0u32..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(element, _)| element) {
-                add_exposed(solid, body, removed, &mut facets, &mut open);
+                add_exposed(solid, body, removed, &mut facets);
             }
         }
-        add_exposed_of_others(solid, open, &mut facets);
         CrackSurface::new(facets)
     }
 
@@ -90,74 +87,17 @@ impl CrackSurface {
     }
 }
 
-/// A side of a removed element behind which its own body has nothing.
-struct OpenSide {
-    key: [u32; 3],
-    body: usize,
-    removed: u32,
-    nodes: [u32; 3],
-    opposite: u32,
-}
-
-/// Nodes of a side in ascending order.
-fn key_of([a, b, c]: [u32; 3]) -> [u32; 3] {
-    let mut key = if b == c { [a.min(b), a.max(b), a.max(b)] } else { [a, b, c] };
-    key.sort_unstable();
-    key
-}
-
-fn sides_of(shape: ElementKind) -> &'static [([usize; 3], usize, usize, usize)] {
-    if shape == ElementKind::T4 { &SIDES_T4 } else { &SIDES_T3 }
-}
-
-/// Adds the facets of other bodies that removal exposes: cracks run along borders too. A body that has left as a whole leaves none.
-fn add_exposed_of_others(solid: &Solid, mut open: Vec<OpenSide>, facets: &mut Vec<CrackFacet>) {
-    if solid.bodies.len() < 2 || open.is_empty() {
-        return;
-    }
-    let left: Vec<bool> = solid.bodies.iter().map(|model| model.alive.contains(&true)).collect();
-    open.retain(|side| left[side.body]);
-    open.sort_unstable_by_key(|side| (side.key, side.body, side.removed));
-    let mut near = vec![false; solid.reference.len()];
-    open.iter().flat_map(|side| side.nodes).for_each(|node| near[node as usize] = true);
-    let mut found = Vec::new();
-    for (body, model) in solid.bodies.iter().enumerate() {
-        let sides = sides_of(model.body.shape);
-        let needed = if model.body.shape == ElementKind::T4 { 3 } else { 2 };
-        let corners = model.body.shape.node_count();
-        for (element, nodes) in
-            (0u32..).zip(model.body.elements.iter()).filter(|(element, _)| model.alive[*element as usize])
-        {
-            if nodes[..corners].iter().filter(|&&node| near[node as usize]).count() < needed {
-                continue;
-            }
-            for &(local, ..) in sides {
-                let key = key_of(local.map(|k| nodes[k]));
-                let first = open.partition_point(|side| side.key < key);
-                let before = open[first..].iter().take_while(|side| side.key == key).find(|side| side.body != body);
-                found.extend(before.map(|side| (side.body, side.removed, body, element, side)));
-            }
-        }
-    }
-    found.sort_unstable_by_key(|&(from, removed, body, element, _)| (from, removed, body, element));
-    let facet = |(from, removed, body, element, side): (usize, u32, usize, u32, &OpenSide)| CrackFacet {
-        removed_body: from,
-        ..crack_facet(solid, body, element, removed, side.nodes, side.opposite)
-    };
-    facets.extend(found.into_iter().map(facet));
-}
-
-/// Adds the facets that the removal of one element exposes in its body.
-fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackFacet>, open: &mut Vec<OpenSide>) {
+/// Adds the facets that the removal of one element exposes.
+fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackFacet>) {
     let model = &solid.bodies[body];
     let Some(edges) = &model.edges else { return };
     let element = model.body.elements[removed as usize];
-    for &(local, opposite, edge, third) in sides_of(model.body.shape) {
+    let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
+    for &(local, opposite, edge, third) in sides {
         let around = edges.around(edges.of_element(removed)[edge]);
-        let (nodes, opposite) = (local.map(|k| element[k]), element[opposite]);
-        match behind(model, &around, element[third]) {
-            Some(behind) => facets.push(crack_facet(solid, body, behind, removed, nodes, opposite)),
-            None => open.push(OpenSide { key: key_of(nodes), body, removed, nodes, opposite }),
+        if let Some(behind) = behind(model, &around, element[third]) {
+            let nodes = local.map(|k| element[k]);
+            facets.push(crack_facet(solid, body, behind, removed, nodes, element[opposite]));
         }
     }
 }
@@ -172,7 +112,7 @@ fn crack_facet(solid: &Solid, body: usize, element: u32, removed: u32, nodes: [u
     };
     let normal = area.try_normalize(0.0).unwrap_or_else(Vec3::zeros);
     let opening = (solid.displacement[opposite as usize] - mean).dot(&normal);
-    CrackFacet { body, element, removed, removed_body: body, nodes, centre, area: area.norm(), normal, opening }
+    CrackFacet { body, element, removed, nodes, centre, area: area.norm(), normal, opening }
 }
 
 /// The element with the node `third` among those around an edge that are still there.
@@ -227,47 +167,6 @@ mod tests {
                 }
                 assert!(!crack.neighbours.row(index).is_empty());
             }
-        }
-    }
-
-    /// A crack in the row beside the border of two bodies has its second face in the other one.
-    #[test]
-    fn a_crack_along_the_border_of_two_bodies_has_two_faces() {
-        let flat = structured_rectangle([5, 3], [0.5, 0.2], None);
-        let deep = structured_box([5, 3, 2], Vec3::new(0.5, 0.2, 0.3), None);
-        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
-        let triangles = flat.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
-        for (shape, nodes, elements) in
-            [(ElementKind::T3, flat.nodes, triangles), (ElementKind::T4, deep.nodes, deep.tetrahedra)]
-        {
-            let all: Vec<[u32; 4]> = elements;
-            let middle = |element: &&[u32; 4]| element.iter().map(|&n| nodes[n as usize].x).sum::<f64>() / 4.0 > 0.3;
-            let (right, left): (Vec<_>, Vec<_>) = all.iter().partition(middle);
-            let body = |name: &str, elements: Vec<[u32; 4]>| {
-                let mut body = Body::new(name, shape, elements, elastic).smoothed();
-                body.thickness = 0.3;
-                body
-            };
-            let bodies = vec![body("left", left).with_damage(DamageLaw::rankine(3e6, 100.0)), body("right", right)];
-            let mut solid = Solid::new(nodes.clone(), bodies).unwrap();
-            assert!(CrackSurface::of(&solid).facets.is_empty());
-            for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
-                u.x = if p.x > 0.25 { 5e-3 } else { 0.0 };
-            }
-            solid.update_internal_forces(0.0, false);
-            crate::removal::remove_cut_elements(&mut solid, 0.0, &mut Vec::new());
-            let crack = CrackSurface::of(&solid);
-            assert!((crack.area() / (2.0 * 0.2 * 0.3) - 1.0).abs() < 1e-12, "{}", crack.area());
-            let (own, beyond): (Vec<&CrackFacet>, Vec<&CrackFacet>) =
-                crack.facets.iter().partition(|facet| facet.body == 0);
-            assert!(
-                own.len() == beyond.len()
-                    && beyond.iter().all(|facet| facet.removed_body == 0 && facet.normal.x < -0.99)
-            );
-            // What leaves as a whole is no crack.
-            let mut gone = solid;
-            gone.bodies[0].alive.fill(false);
-            assert!(CrackSurface::of(&gone).facets.is_empty());
         }
     }
 }

@@ -31,9 +31,9 @@ pub struct SeparatedElement {
 /// A facet that faces a crack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparatedFacet {
-    /// Body of the removed element before it.
+    /// Body it belongs to.
     pub body: usize,
-    /// Number of that element there.
+    /// Removed element before it.
     pub removed: u32,
     /// Its share of the area of the crack without load, of which it is one of two faces [m²].
     pub area: f64,
@@ -83,7 +83,7 @@ fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet
     };
     let areas = vectors.iter().zip(&mean).map(projected);
     let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
-        body: facet.removed_body,
+        body: facet.body,
         removed: facet.removed,
         area: 0.5 * area,
     };
