@@ -170,3 +170,24 @@ fn a_joint_above_a_hole_slides_from_the_friction_angle_of_the_elastic_stress_on(
         );
     }
 }
+
+/// A joint that meets a side on which a support holds both of its sides askew, and crosses the border of what leaves, 0.5 radii from the middle of
+/// the hole. Among elements of 1 to 20 mm it must not be led along that border. By Lamé it bears up to 30 degrees, at the wall.
+#[test]
+fn a_joint_through_a_support_and_a_hole_slides_under_little_friction_alone() {
+    let case = include_str!("../../../cases/excavation/jointed.toml");
+    let (begin, end) = (case.find("table = ").unwrap(), case.find("\n\n[materials").unwrap());
+    let askew = format!("{}table = [[\"0 mm\", \"7 mm\", \"60 mm\", \"67 mm\"]]{}", &case[..begin], &case[end..]);
+    let mesh = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/excavation-plane/hole.msh")).unwrap();
+    let place = Workplace::with_mesh(&askew.replace("../../meshes/excavation-plane/hole.msh", "bar.msh"), &mesh);
+    for (angle, slides) in [("60 deg", false), ("32 deg", false), ("20 deg", true)] {
+        let set = format!("angle={angle}");
+        let ended = place.fractum(&["run", "case.toml", "--quiet", "-o", "one", "--overwrite", "--set", &set]);
+        assert_eq!(ended.code, Some(0), "{angle}: {}", ended.stderr);
+        let one = summary(&place, "one");
+        assert_eq!(energy(&one, "friction") > 1e-7, slides, "{angle}: {}", one["energy"]);
+        // The way of the wall by Lamé, where nothing slides.
+        let top = one["probes"]["top"]["final"].as_f64().unwrap();
+        assert!(slides || (top / 1.875e-6 - 1.0).abs() < 0.01, "{angle}: {top}");
+    }
+}

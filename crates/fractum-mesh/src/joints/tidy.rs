@@ -134,6 +134,8 @@ fn bend(pattern: &mut Pattern<'_>) -> bool {
         let beside = used[from..].iter().take_while(|&&vertex| pattern.place(vertex)[0] <= high).copied();
         let beside = beside.filter(|vertex| !segment.ends.contains(vertex)).filter_map(|vertex| {
             let (gap, foot, along) = foot(pattern.place(vertex), line);
+            // By the elements there: those at the middle of a long line may be many times as large.
+            let near = near.min(NEAR * pattern.sheet.size_at(pattern.place(vertex)));
             (gap < near && along > 0.0 && along < 1.0).then_some((gap, vertex, foot))
         });
         let Some((_, vertex, foot)) = beside.min_by(|a, b| a.0.total_cmp(&b.0)) else { continue };

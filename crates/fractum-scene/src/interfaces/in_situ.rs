@@ -5,7 +5,7 @@ use fractum_kernels::interface::{InterfaceLaw, SpringInterface};
 use fractum_math::Vec3;
 
 use super::inside::pressure_in;
-use super::{InterfaceKind, Interfaces, Point};
+use super::{Cluster, InterfaceKind, Interfaces, Point};
 
 /// How much stiffer than an element the springs are that keep the sides together until the state of the start is known.
 const FIRM: f64 = 1e4;
@@ -37,49 +37,83 @@ impl Interfaces {
 
     /// Begins with the tractions of such springs: jumps count from here, and a stiffness has given way to them already.
     ///
+    /// - `held`: bit a of a node is set where a support holds its axis a; empty without supports
     /// - `springs`: of [`Interfaces::firm_springs`], whose forces are in balance with all others
-    pub(crate) fn begin_under(&mut self, solid: &Solid, springs: &[([u32; 2], f64)]) -> Result<(), Overloaded> {
+    pub(crate) fn begin_under(
+        &mut self,
+        solid: &Solid,
+        held: &[u8],
+        springs: &[([u32; 2], f64)],
+    ) -> Result<(), Overloaded> {
         self.turn(solid);
-        let Interfaces { kinds, pressures, clusters, .. } = self;
-        let points = || clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0);
-        let jump = |point: &Point| {
+        let Interfaces { pressures, clusters, .. } = self;
+        for (point, (_, stiffness)) in present(clusters).zip(springs) {
             let [a, b] = point.pair.map(|node| solid.displacement[node as usize]);
-            b - a
-        };
-        let tractions: Vec<Vec3> = points()
-            .zip(springs)
-            .map(|(point, (_, stiffness))| {
-                let thrust = pressure_in(pressures, point.kind)
-                    .map_or_else(Vec3::zeros, |pressure| pressure.thrust(point, point.state.residual, 0.0));
-                point.frame * (jump(point) * *stiffness + thrust) / point.area
-            })
-            .collect();
-        let largest = tractions.iter().map(|traction| traction.norm()).fold(0.0, f64::max);
-        for (point, traction) in points().zip(&tractions) {
-            let InterfaceKind { name, law, .. } = &kinds[point.kind as usize];
-            if !bears(law, traction, ROUNDING * largest) {
+            let pressure = pressure_in(pressures, point.kind);
+            point.thrust =
+                pressure.map_or_else(Vec3::zeros, |pressure| pressure.thrust(point, point.state.residual, 0.0));
+            (point.jump, point.pull) = (b - a, (b - a) * *stiffness + point.thrust);
+        }
+        self.fill_in_at_supports(held);
+        let Interfaces { kinds, clusters, .. } = self;
+        let largest = present(clusters).map(|point| point.pull.norm() / point.area).fold(0.0, f64::max);
+        for point in present(clusters) {
+            let InterfaceKind { name, law, stiffness } = &kinds[point.kind as usize];
+            let traction = point.frame * point.pull / point.area;
+            if !bears(law, &traction, ROUNDING * largest) {
                 let traction = [traction.x, traction.yz().norm()];
                 return Err(Overloaded { name: name.clone(), place: point.place, traction });
             }
-        }
-        let points = clusters.iter_mut().flat_map(|cluster| &mut cluster.points).filter(|point| point.area > 0.0);
-        for (point, traction) in points.zip(&tractions) {
-            let InterfaceKind { law, stiffness, .. } = &kinds[point.kind as usize];
-            point.jump = jump(point);
             let given_way = stiffness.map_or_else(Vec3::zeros, |[normal, across]| {
                 Vec3::new(traction.x / normal, traction.y / across, traction.z / across)
             });
             point.offset = point.frame * point.jump - given_way;
-            point.pull = point.frame.tr_mul(traction) * point.area;
             if let Some(stiffness) = *stiffness {
                 point.force = SpringInterface { law: *law, stiffness }.load(given_way, &mut point.state);
-            }
-            if let Some(pressure) = pressure_in(pressures, point.kind) {
-                point.thrust = pressure.thrust(point, point.state.residual, 0.0);
             }
         }
         Ok(())
     }
+
+    /// Where a support holds both sides along an axis it bears their forces, and springs tell nothing of the traction: it is that of the other
+    /// corners of the same faces.
+    fn fill_in_at_supports(&mut self, held: &[u8]) {
+        let of_node = |node: u32| held.get(node as usize).copied().unwrap_or(0);
+        let is_held = |point: &Point, axis: usize| point.pair.into_iter().all(|node| of_node(node) >> axis & 1 == 1);
+        let sign = |point: &Point, face: u32| {
+            point.faces.iter().find(|own| own.0 == face).map_or(1.0, |(_, share)| share.signum())
+        };
+        let beside = |point: &Point, axis: usize| {
+            let corners = point.faces.iter().flat_map(|&(face, share)| {
+                let others = self.points_of[face as usize].iter().flatten();
+                others.map(move |&(cluster, index)| (face, share.signum(), cluster, index))
+            });
+            let (mut sum, mut count) = (0.0, 0.0);
+            for (face, own, cluster, index) in corners {
+                let other = &self.clusters[cluster as usize].points[index as usize];
+                if other.area > 0.0 && !is_held(other, axis) {
+                    sum += own * sign(other, face) * other.pull[axis] / other.area;
+                    count += 1.0;
+                }
+            }
+            (count > 0.0).then(|| point.area * sum / count)
+        };
+        let mut found: Vec<(usize, usize, usize, f64)> = Vec::new();
+        for (cluster, own) in self.clusters.iter().enumerate() {
+            for (index, point) in own.points.iter().enumerate().filter(|(_, point)| point.area > 0.0) {
+                let axes = (0..3).filter(|&axis| is_held(point, axis));
+                found.extend(axes.filter_map(|axis| Some((cluster, index, axis, beside(point, axis)?))));
+            }
+        }
+        for (cluster, index, axis, pull) in found {
+            self.clusters[cluster].points[index].pull[axis] = pull;
+        }
+    }
+}
+
+/// Points with an area.
+fn present(clusters: &mut [Cluster]) -> impl Iterator<Item = &mut Point> {
+    clusters.iter_mut().flat_map(|cluster| &mut cluster.points).filter(|point| point.area > 0.0)
 }
 
 /// Whether an interface that nothing has loaded yet bears a traction.

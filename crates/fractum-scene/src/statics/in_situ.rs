@@ -44,7 +44,8 @@ impl Scene {
             if missing <= TOLERANCES[1] * scale {
                 check_pins(self, &held, scale)?;
                 self.solid.initial_displacement = self.solid.displacement.clone();
-                self.optional.interfaces.begin_under(&self.solid, &firm).map_err(overloaded)?;
+                let held = self.supports.held();
+                self.optional.interfaces.begin_under(&self.solid, held, &firm).map_err(overloaded)?;
                 book_in_situ(self);
                 return Ok(());
             }
