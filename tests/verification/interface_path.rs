@@ -122,7 +122,7 @@ fn a_path_of_interfaces_has_the_same_bits_on_any_threads_and_after_a_resume() {
                 let (mut scene, _) = pulled(&bar, 3.0 * elastic);
                 let mut solver = new(&scene);
                 let (mut back, mut time) = (0, 0.0);
-                while back < 8 {
+                while back < 6 {
                     solver.step(&mut scene).unwrap();
                     back += u32::from(scene.clock.time < time);
                     time = scene.clock.time;

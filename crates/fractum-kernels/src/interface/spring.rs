@@ -143,33 +143,47 @@ impl SpringInterface {
         [closed, (whole + broken * rubs) * across]
     }
 
-    /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across. By differences along the normal and
-    /// along the slip, away from zero and thus towards further softening; the symmetric part of it, and of a closed face the diagonal alone.
+    /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across; symmetric, and definite but for softening.
+    ///
+    /// [`SpringInterface::jacobian`] is not symmetric where modes are mixed or pressure makes friction, and its symmetric part is far from definite. This is the
+    /// symmetric matrix whose tractions stay where those of the jacobian stay. An open face that softens keeps to the ellipse r = const, by the matrix
+    /// D (1 - (1 - q) δ bᵀ) with the secant D, b = ∇r/r, and q the growth of the traction with that of δ: taken is D - (1 - q)/(b·D⁻¹b) b bᵀ. A closed face
+    /// that slides keeps to the cone of friction: taken is K_n c cᵀ with c = (1, dt_s/dt_n), besides the softening along the slip.
     ///
     /// - `state`: the history that [`SpringInterface::load`] takes at `jump`
-    /// - `here`, `secant`: the traction there, and [`SpringInterface::secant`]
+    /// - `secant`: [`SpringInterface::secant`] there
     #[inline]
-    pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, here: &Vec3, secant: [f64; 2]) -> Mat3 {
+    pub fn tangent(&self, jump: &Vec3, state: &InterfaceState, secant: [f64; 2]) -> Mat3 {
+        let diagonal = Vec3::new(secant[0], secant[1], secant[1]);
         if state.secant == 0.0 && *jump == Vec3::zeros() {
-            return Mat3::from_diagonal(&Vec3::new(secant[0], secant[1], secant[1]));
+            return Mat3::from_diagonal(&diagonal);
         }
+        let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
+        let jump = &self.past_onset(jump, state);
+        let here = at(*jump);
         let size = tangential(jump);
         let along = if size > 0.0 { Vec3::new(0.0, jump.y, jump.z) / size } else { Vec3::y() };
+        if jump.x >= 0.0 && diagonal.min() > 0.0 {
+            if !self.standing(jump, state).is_some_and(|standing| standing.ratio > standing.onset) {
+                return Mat3::from_diagonal(&diagonal);
+            }
+            let asked = self.asked(jump, 0.0);
+            let grows = (at(jump * (1.0 + DIFFERENCE)) - here).dot(jump) / (DIFFERENCE * here.dot(jump));
+            let away = self.away(&asked, &along) / asked.square;
+            let compliance = away.component_mul(&away).component_div(&diagonal).sum();
+            return Mat3::from_diagonal(&diagonal) - away * away.transpose() * ((1.0 - grows) / compliance);
+        }
         let across = Vec3::x().cross(&along);
-        let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
         let onset = self.law.tensile_strength / self.stiffness[0] + self.law.cohesion / self.stiffness[1];
         let step = DIFFERENCE * (jump.norm() + onset).max(f64::MIN_POSITIVE.sqrt());
         let normal = Vec3::x() * if jump.x < 0.0 { -1.0 } else { 1.0 };
         let by_normal = (at(jump + normal * step) - here) * (normal.x / step);
         let by_slip = (at(jump + along * step) - here) / step;
-        // Friction rises with the pressure and presses back with nothing: half of that each way would leave no stable state.
-        let both = if jump.x < 0.0 { 0.0 } else { 0.5 * (by_normal.dot(&along) + by_slip.x) };
-        let crossed = along * Vec3::x().transpose() * both;
-        Mat3::from_diagonal(&Vec3::new(by_normal.x, 0.0, 0.0))
+        let rubs = if by_normal.x > 0.0 { by_normal.dot(&along) / by_normal.x } else { 0.0 };
+        let cone = Vec3::x() + along * rubs;
+        cone * cone.transpose() * by_normal.x
             + along * along.transpose() * by_slip.dot(&along)
             + across * across.transpose() * secant[1]
-            + crossed
-            + crossed.transpose()
     }
 
     /// How the traction changes with the jump [Pa/m], rows and columns: normal, two directions across. By differences, away from zero: towards further
@@ -179,6 +193,7 @@ impl SpringInterface {
     #[inline]
     pub fn jacobian(&self, jump: &Vec3, state: &InterfaceState) -> Mat3 {
         let at = |jump: Vec3| self.load(jump, &mut state.clone()).traction();
+        let jump = &self.past_onset(jump, state);
         let here = at(*jump);
         let onset = self.law.tensile_strength / self.stiffness[0] + self.law.cohesion / self.stiffness[1];
         let step = DIFFERENCE * (jump.norm() + onset).max(f64::MIN_POSITIVE.sqrt());
@@ -189,6 +204,14 @@ impl SpringInterface {
             (at(moved) - here) / step
         };
         Mat3::from_columns(&[0, 1, 2].map(column))
+    }
+
+    /// What opens and stands at its onset, as all that softened in the last step does, softens on: a jump just past it.
+    #[inline]
+    fn past_onset(&self, jump: &Vec3, state: &InterfaceState) -> Vec3 {
+        let stands = |standing: Standing| (standing.ratio / standing.onset - 1.0).abs() <= DIFFERENCE;
+        let is_there = jump.x >= 0.0 && self.standing(jump, state).is_some_and(stands);
+        if is_there { jump * (1.0 + 2.0 * DIFFERENCE) } else { *jump }
     }
 
     /// Lets the strength go down where the jump asks for it.
@@ -230,6 +253,16 @@ impl SpringInterface {
         Asked { opens, slides, square: first * first + second * second }
     }
 
+    /// Gradient of half of the square that is asked [1/m].
+    ///
+    /// - `along`: direction of the slip
+    #[inline]
+    fn away(&self, asked: &Asked, along: &Vec3) -> Vec3 {
+        let (law, [normal, across]) = (&self.law, self.stiffness);
+        Vec3::x() * (asked.opens * normal / (law.tensile_strength * law.tensile_strength))
+            + along * (asked.slides * across / (law.cohesion * law.cohesion))
+    }
+
     /// Onset and end of the mode in which something is asked.
     #[inline]
     fn on_curve(&self, asked: &Asked) -> Loading {
@@ -267,7 +300,7 @@ impl SpringInterface {
     /// - `jump`, `state`: those of the last iterate and of the last equilibrium; something is asked of its strength
     #[inline]
     pub fn lead(&self, jump: &Vec3, state: &InterfaceState, ratio: f64) -> Led {
-        let (law, [normal, across]) = (&self.law, self.stiffness);
+        let [normal, across] = self.stiffness;
         let rubs = self.rubs(jump, state);
         let asked = self.asked(jump, rubs);
         let factor = ratio / asked.square.sqrt();
@@ -278,9 +311,7 @@ impl SpringInterface {
         let mut after = *state;
         let force = self.load(led, &mut after);
         let [first, second] = self.secant(&led, &force, &after);
-        let away = Vec3::x() * (asked.opens * normal / (law.tensile_strength * law.tensile_strength))
-            + along * (asked.slides * across / (law.cohesion * law.cohesion));
-        let away = away.normalize();
+        let away = self.away(&asked, &along).normalize();
         let secant = Mat3::from_diagonal(&Vec3::new(first, second, second));
         let held = normal.max(across) - (secant * away).dot(&away);
         Led { jump: led, traction: force.traction(), stiffness: secant + away * away.transpose() * held.max(0.0) }

@@ -152,7 +152,7 @@ pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
         let (jump, mut after) = (along * way, *state);
         let force = interface.load(jump, &mut after);
         let secant = interface.secant(&jump, &force, &after);
-        (along.dot(&(interface.tangent(&jump, state, &force.traction(), secant) * along)), after)
+        (along.dot(&(interface.tangent(&jump, state, secant) * along)), after)
     };
     let (before, _) = slope(share * onset, &state);
     hold((before / elastic - 1.0).abs() < 1e-5, || format!("{before} for {elastic} Pa/m before the onset"))?;

@@ -9,6 +9,9 @@ use super::joints::PointPlace;
 use super::motion::{Closing, Rubbed};
 use super::{InterfaceKind, Interfaces, Taken};
 
+/// Part of a stiffness that what it lacks may be, by differences, where nothing is missing.
+const SYMMETRIC: f64 = 1e-6;
+
 /// A spring of an interface between two nodes.
 pub(crate) struct InterfaceSpring {
     /// Nodes on the first and on the second side.
@@ -19,6 +22,8 @@ pub(crate) struct InterfaceSpring {
     pub(crate) force: Vec3,
     /// How it falls with the displacement of the second node against the first [N/m].
     pub(crate) stiffness: Mat3,
+    /// What its own stiffness has beside that, which is symmetric [N/m]; none where nothing is missing.
+    pub(crate) rest: Option<Mat3>,
     /// How it rises with time, by the pressure inside [N/s].
     pub(crate) rate: Vec3,
 }
@@ -48,12 +53,20 @@ impl Interfaces {
             let mut traction = force.traction();
             let secant @ [along, across] = interface.secant(&jump, &force, &state);
             let mut stiffness = Mat3::from_diagonal(&Vec3::new(along, across, across));
+            let mut rest = None;
             if share < 1.0 {
-                stiffness =
-                    stiffness * share + interface.tangent(&jump, &point.state, &traction, secant) * (1.0 - share);
+                let tangent = interface.tangent(&jump, &point.state, secant);
+                stiffness = stiffness * share + tangent * (1.0 - share);
+                // What is not bonded keeps that share of its secant: it may be all that holds a side. So does what softens beside a point that leads:
+                // it would go its own way. Beside the load it would only be held back.
+                let held = if point.state.secant > 0.0 && led.is_none() { stiffness } else { tangent };
+                let missing = interface.jacobian(&jump, &point.state) - held;
+                let moves = jump != Vec3::zeros() && missing.norm() > SYMMETRIC * stiffness.norm();
+                rest = moves.then_some(missing);
             }
             if let Some(led) = led.as_ref().and_then(|led| led.of(point, &interface)) {
                 stiffness = led.stiffness;
+                rest = None;
                 traction = led.traction + stiffness * (jump - led.jump);
             }
             let thrust = |time: f64| {
@@ -66,6 +79,7 @@ impl Interfaces {
                 normal: point.frame.row(0).transpose(),
                 force: pushed - point.frame.tr_mul(&traction) * point.area,
                 stiffness: point.frame.transpose() * stiffness * point.frame * point.area,
+                rest: rest.map(|rest| point.frame.transpose() * rest * point.frame * point.area),
                 rate: (thrust(time + ahead) - pushed) / ahead,
             })
         })

@@ -48,6 +48,8 @@ pub(super) struct Spring {
     pub(super) force: Vec3,
     /// How it falls with the displacement of the node, against that of its partner [N/m].
     pub(super) stiffness: Mat3,
+    /// What its own stiffness has beside that, which is symmetric [N/m].
+    pub(super) rest: Option<Mat3>,
     /// How it changes as the shape moves on [N/s].
     pub(super) rate: Vec3,
 }
@@ -56,7 +58,12 @@ impl Spring {
     /// A spring without force between the nodes of a pair.
     pub(super) fn between([partner, node]: [u32; 2], stiffness: Mat3) -> Self {
         let (normal, force, rate) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
-        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate }
+        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rest: None, rate }
+    }
+
+    /// All of its stiffness [N/m].
+    pub(super) fn whole(&self) -> Mat3 {
+        self.rest.map_or(self.stiffness, |rest| self.stiffness + rest)
     }
 
     /// A displacement field at its node, against that of its partner.
@@ -210,12 +217,12 @@ pub(super) fn contact_springs(
         let force = push.normal * (push.stiffness * push.overlap);
         let [partner, node] = push.nodes;
         let (partner, rate) = (Some(partner), Vec3::zeros());
-        Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rate }
+        Spring { node, partner, ground: 0, normal: push.normal, force, stiffness, rest: None, rate }
     };
     let mut springs: Vec<Spring> = scene.debris.pushes(&scene.solid, field).map(pushed).collect();
     springs.extend(scene.interfaces().springs(field, [times[1], ahead], hold.share, hold.led).map(|spring| {
-        let InterfaceSpring { pair: [partner, node], normal, force, stiffness, rate } = spring;
-        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rate }
+        let InterfaceSpring { pair: [partner, node], normal, force, stiffness, rest, rate } = spring;
+        Spring { node, partner: Some(partner), ground: 0, normal, force, stiffness, rest, rate }
     }));
     if scene.shape_contacts.is_empty() {
         return springs;
@@ -257,7 +264,16 @@ pub(super) fn contact_springs(
             let least = if kept.is_some() { f64::NEG_INFINITY } else { 0.0 };
             let force = normal * (stiff * overlap.max(least)) - slip * stiff_across;
             let rate = stiffness * pace;
-            springs.push(Spring { node: c.node, partner: None, ground: index, normal, force, stiffness, rate });
+            springs.push(Spring {
+                node: c.node,
+                partner: None,
+                ground: index,
+                normal,
+                force,
+                stiffness,
+                rest: None,
+                rate,
+            });
         }
     }
     springs

@@ -7,7 +7,7 @@ use fractum_sparse::SparseError;
 use super::contact::{Also, Hold, Spring, bring_back, contact_springs, forget_brought_back, has_contacts};
 use super::equilibrium::{Boundary, boundary_at, check_loose, come_apart, unbalance};
 use super::{
-    Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, Touching, path,
+    Control, Edges, GROWTH, ITERATIONS, MONOTONE_ITERATIONS, NO_FORCE, Response, StaticSolver, Touching, path, skew,
 };
 use crate::error::StepError;
 use crate::scene::Scene;
@@ -23,6 +23,8 @@ const SLIPPING_FREELY: [usize; 2] = [ITERATIONS[0], 60];
 /// Looks along a way for the place at which the forces do no work any more, and the part of their work that may be left.
 const LOOKS: usize = 6;
 const LEFT: f64 = 0.5;
+/// Iterations that go all their way. Later ones go half of it where that leaves more out of balance: faces that soften and unload by turns come to rest so.
+const FULLY: usize = 5;
 /// Unbalanced forces over those that drive a linear solution, below which they are rounding.
 const ROUNDING: f64 = 1e-11;
 /// Energy over that of the forces that drive a step on their way, below which it is rounding.
@@ -70,6 +72,7 @@ impl StaticSolver {
         // What sticks has moved a little at each equilibrium but the last.
         let (mut iteration, mut brought_back, mut slowest) = (0, 0, 0);
         let mut unbalanced = Vec::new();
+        let mut out_of_balance = f64::INFINITY;
         while iteration < most {
             iteration += 1;
             if (self.stop)() {
@@ -101,10 +104,17 @@ impl StaticSolver {
                 if since == 0.0 {
                     let start = (&from[..], &unbalanced[..]);
                     found = self.go_to_least_energy(scene, &exact, [present, tau], longest, start, found);
+                    if iteration > FULLY && found[0] > out_of_balance {
+                        for (place, from) in self.response.start.iter_mut().zip(&from) {
+                            *place = 0.5 * (*place + from);
+                        }
+                        found = self.look(scene, &exact, [present, tau], longest);
+                    }
                 }
                 unbalanced.clone_from(&self.response.right);
             }
             let [missing, forces] = found;
+            out_of_balance = missing;
             found_at = present + tau;
             // A body that is moved or heated without strain bears no forces that its rounding could be held against.
             let linear = points.is_empty() && !has_contacts(scene);
@@ -341,13 +351,14 @@ impl StaticSolver {
         }
         for spring in &self.touching.springs {
             let moved = spring.of(&field) - spring.of(&self.touching.place);
-            spring.push(spring.force + spring.rate * since - spring.stiffness * moved, &mut self.response.right);
+            spring.push(spring.force + spring.rate * since - spring.whole() * moved, &mut self.response.right);
         }
         for (i, anchor) in self.system.anchors().iter().enumerate() {
             self.response.right[i] += (self.touching.place[i] - field[i]) * *anchor;
         }
         let given = norm(&self.response.right);
-        self.system.solve(&self.response.right, &mut self.response.start).map_err(|e| come_apart(scene, e))?;
+        skew::solve(&mut self.system, &self.touching.springs, &self.response.right, &mut self.response.start)
+            .map_err(|e| come_apart(scene, e))?;
         check_loose(scene, &self.response.start, 1.0)?;
         for (u, p) in self.response.start.iter_mut().zip(&field) {
             *u += p;
@@ -363,12 +374,13 @@ impl StaticSolver {
             *right = (there.force[i] - here.force[i]) / ahead - *right;
         }
         for spring in &self.touching.springs {
-            spring.push(spring.rate - spring.stiffness * spring.of(&field), &mut self.response.right);
+            spring.push(spring.rate - spring.whole() * spring.of(&field), &mut self.response.right);
         }
         // Temperatures that have changed are out of balance from the start.
         self.response.given = self.response.given.max(given);
         self.response.driving = self.response.driving.max(given + ahead.abs() * norm(&self.response.right));
-        self.system.solve(&self.response.right, &mut self.response.slope).map_err(|e| come_apart(scene, e))?;
+        skew::solve(&mut self.system, &self.touching.springs, &self.response.right, &mut self.response.slope)
+            .map_err(|e| come_apart(scene, e))?;
         check_loose(scene, &self.response.slope, ahead)?;
         for (u, p) in self.response.slope.iter_mut().zip(&field) {
             *u += p;

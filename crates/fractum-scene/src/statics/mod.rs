@@ -23,6 +23,7 @@ mod period;
 mod prestress;
 mod rigid_motions;
 mod settings;
+mod skew;
 mod slowest;
 mod solid_modes;
 mod static_dynamic;
