@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fractum_fem::{
     Body, Criterion, CriterionKind, DamageLaw, DamageZone, Elastic, ElementKind, Formulation, Plane, Region,
-    Regularisation, Softening, Solid, SolidError, fields,
+    Regularisation, Softening, Solid, SolidError, cracks, fields,
 };
 use fractum_math::Vec3;
 use fractum_mesh::generate::{Jitter, structured_box, structured_rectangle};
@@ -152,14 +152,20 @@ pub(crate) fn taken(scene: &Scene) -> f64 {
     ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed]
 }
 
-/// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
-fn torn(bar: &Bar) -> [f64; 3] {
+/// A bar that is torn: the scene afterwards, the largest load [N], the length of the bar [m] and its cross-section [m²].
+fn torn_scene(bar: &Bar) -> (Scene, f64, f64, f64) {
     let (nodes, body) = body(bar);
     let Bar { kind, cells: [along, across], law, .. } = bar;
     let end = SIZE * f64::from(*along);
     let pull = 20.0 * (law.tensile_strength / YOUNG * end + FRACTURE_ENERGY / law.tensile_strength);
     let (scene, peak) = tear(nodes, body, end, pull, &format!("{kind:?} {law:?}"));
-    let area = (SIZE * f64::from(*across)).powi(2);
+    (scene, peak, end, (SIZE * f64::from(*across)).powi(2))
+}
+
+/// Strength over that of the weak part, energy of the crack over G_f A, and the largest damage far from it, of a bar that is torn.
+fn torn(bar: &Bar) -> [f64; 3] {
+    let (scene, peak, end, area) = torn_scene(bar);
+    let Bar { kind, law, .. } = bar;
     let far = bar.half + 4.0 * length(*kind);
     let solid = &scene.solid;
     let corners = kind.node_count();
@@ -277,6 +283,23 @@ fn a_crack_costs_its_fracture_energy_at_any_poissons_ratio() {
         missed.extend(misses(&format!("{kind:?} {plane:?} {cells:?}"), bar, &[0.15, 0.3, 0.45], seeds));
     }
     assert!(missed.is_empty(), "{missed:#?}");
+}
+
+/// Edges beside the crack have lost stiffness and little strength: they are hardly a part of its area.
+#[test]
+fn the_area_of_the_cracks_of_a_torn_bar_is_its_cross_section() {
+    for (kind, poisson_ratio, softening) in [
+        (ElementKind::T3, 0.0, Softening::Linear),
+        (ElementKind::T3, 0.45, Softening::Exponential),
+        (ElementKind::T4, 0.3, Softening::Exponential),
+    ] {
+        let cells = if kind == ElementKind::T3 { [14, 6] } else { [10, 4] };
+        let bar = plain(kind, Plane::Stress, poisson_ratio, cells, 5);
+        let law = DamageLaw { softening, ..bar.law.clone() };
+        let (scene, _, _, area) = torn_scene(&Bar { law, ..bar });
+        let found: f64 = cracks::crack_edges(&scene.solid).iter().map(|edge| edge.cracked).sum();
+        assert!((0.9..1.2).contains(&(found / area)), "{kind:?} {poisson_ratio} {softening:?}: {}", found / area);
+    }
 }
 
 /// So it does where a phase field spreads it.

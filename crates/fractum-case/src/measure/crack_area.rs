@@ -1,6 +1,5 @@
-//! Area of the cracks, Σ V d/l over the damaged edges, and that of broken interfaces [m²].
+//! Area of the cracks, over the damaged edges by the strength that they have lost, and that of broken interfaces [m²].
 
-use fractum_fem::CrackEdge;
 use fractum_scene::{Probe, ProbeNeeds, ProbedScene, Scene};
 
 use super::Measure;
@@ -33,7 +32,7 @@ impl Measure for CrackArea {
 impl Probe for CrackArea {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let broken: f64 = probed.scene.interfaces().broken().map(|(_, part, area)| part * area).sum();
-        probed.crack_edges().iter().map(CrackEdge::damaged_area).sum::<f64>() + broken
+        probed.crack_edges().iter().map(|edge| edge.cracked).sum::<f64>() + broken
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

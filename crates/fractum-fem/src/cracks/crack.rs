@@ -30,21 +30,17 @@ pub struct CrackEdge {
     pub edge: u32,
     /// Its middle without load [m].
     pub middle: Vec3,
-    /// Its share of the crack, V/l with the volume V of the reference mesh and the characteristic length l [m²]. Under a phase field, whose band is
-    /// wider, damage times area is 2 V (2d - d²)/(π b): the area of a full crack all the same.
+    /// Its share of the crack, V/l with the volume V of the reference mesh and the characteristic length l [m²]; under a phase field 2 V (2 - d)/(π b).
     pub area: f64,
+    /// What it adds to the area of crack [m²]: all of a crack through a bar counts as its cross-section. Area times the strength that is lost, which is the
+    /// share of the fracture energy that is spent (exactly so under linear softening), since stiffness goes long before; under a phase field, whose band is
+    /// wider, 2 V (2d - d²)/(π b).
+    pub cracked: f64,
     /// Damage, 0 to 1.
     pub damage: f64,
     /// Part of the strength that is lost, 0 to 1; behind damage at first, as stiffness goes before strength. Under a phase field that which its own
     /// opening would take from a crack, so that the middle of the band stands out.
     pub softened: f64,
-}
-
-impl CrackEdge {
-    /// What it adds to the area of crack, d V/l [m²]: a crack through all of a bar counts as its cross-section.
-    pub fn damaged_area(&self) -> f64 {
-        self.damage * self.area
-    }
 }
 
 /// Centre and normal of the plane nearest to a crack; in the plane the line nearest to it.
@@ -128,12 +124,19 @@ pub fn crack_edges(solid: &Solid) -> Vec<CrackEdge> {
 fn crack_edge(solid: &Solid, body: usize, field: &EdgeField, at: usize) -> CrackEdge {
     let (model, edge, state) = (&solid.bodies[body], field.edges[at], &field.state[at]);
     let volume = volume_of_edge(solid, body, edge);
-    let (area, left) = match &model.phase {
-        None => (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]),
-        Some(phase) => (
-            volume * phase.area_density(edge as usize) / state.damage,
-            field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
-        ),
+    let (area, cracked, left) = match &model.phase {
+        None => {
+            let (area, left) = (volume / field.length[at], (1.0 - state.damage) * state.kappa / field.strength[at]);
+            (area, area * (1.0 - left), left)
+        }
+        Some(phase) => {
+            let cracked = volume * phase.area_density(edge as usize);
+            (
+                cracked / state.damage,
+                cracked,
+                field.softens.residual_ratio(state.kappa, field.strength[at], field.length[at]),
+            )
+        }
     };
     let ends = model.edges.iter().flat_map(|edges| edges.nodes(edge));
     CrackEdge {
@@ -141,6 +144,7 @@ fn crack_edge(solid: &Solid, body: usize, field: &EdgeField, at: usize) -> Crack
         edge,
         middle: ends.map(|node| solid.reference[node as usize]).sum::<Vec3>() * 0.5,
         area,
+        cracked,
         damage: state.damage,
         softened: 1.0 - left,
     }
@@ -172,7 +176,7 @@ fn volume_of_edge(solid: &Solid, body: usize, edge: u32) -> f64 {
 pub fn cost_of_bands(solid: &Solid, body: usize) -> Option<f64> {
     let model = &solid.bodies[body];
     let (zone, _) = model.body.damage.as_ref().zip(model.phase.as_ref())?;
-    let area = |edge: &CrackEdge| if edge.body == body { edge.damaged_area() } else { 0.0 };
+    let area = |edge: &CrackEdge| if edge.body == body { edge.cracked } else { 0.0 };
     let needed = zone.law.fracture_energy * crack_edges(solid).iter().map(area).sum::<f64>();
     let taken: f64 = solid.blocks.iter().filter(|block| block.body == body).map(|block| block.dissipated).sum();
     (needed > 0.0).then(|| taken / needed)
@@ -189,9 +193,9 @@ pub fn share_at_borders(solid: &Solid, body: usize) -> Option<f64> {
     }
     let [mut whole, mut there] = [0.0; 2];
     for edge in crack_edges(solid).iter().filter(|edge| edge.body == body) {
-        whole += edge.damaged_area();
+        whole += edge.cracked;
         if edges.nodes(edge.edge).iter().any(|&node| shared[node as usize]) {
-            there += edge.damaged_area();
+            there += edge.cracked;
         }
     }
     (whole > 0.0).then(|| there / whole)
