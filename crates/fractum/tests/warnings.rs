@@ -266,6 +266,7 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         checked("thin-mesh", structured_rectangle([16, 2], [0.4, 0.05], None), &[("{ x = {", "{ y = {")]),
         checked("thin-mesh", structured_box([8, 8, 1], Vec3::new(0.4, 0.4, 0.02), None), &[("{ x = {", "{ z = {")]),
         checked("thin-mesh", structured_box([16, 2, 2], Vec3::new(0.4, 0.05, 0.05), None), &[("[solver]", GRAVITY)]),
+        checked("thin-mesh", structured_rectangle([32, 4], [0.4, 0.05], None), &[("{ x = {", "{ y = {")]),
         checked("locking", bar(), &[("poisson_ratio = 0.2", "poisson_ratio = 0.49")]),
         checked("locking", plate(), &[("poisson_ratio = 0.2", "poisson_ratio = 0.4999")]),
         checked("suction", channel(), &[("[solver]", &load("pressure = \"-2 MPa\""))]),

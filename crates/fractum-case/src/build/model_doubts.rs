@@ -9,7 +9,7 @@ use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, thin, unheld};
+use super::body_doubts::{Own, pieces, thin, unheld};
 use super::idle_doubts::{measured_in_vain, taken_at_once, unmoved};
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{coincident, meetings, missing, overlapping, rebounds, undamped};
@@ -61,7 +61,9 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     let without = undamped(case, mesh, &bodies);
     doubts.extend(if without.is_empty() { rebounds(case) } else { without });
     doubts.extend(unheld(case, mesh, &bodies));
-    doubts.extend(bodies.iter().filter_map(|body| thin(case, mesh, body)));
+    let joined = pieces(mesh, &bodies);
+    let is_alone = |piece: u32| joined.iter().filter(|other| **other == piece).count() == 1;
+    doubts.extend(bodies.iter().zip(&joined).filter_map(|(body, &piece)| thin(case, mesh, body, is_alone(piece))));
     doubts.extend(bodies.iter().filter_map(|body| torn_at_once(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));

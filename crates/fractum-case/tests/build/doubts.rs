@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use fractum_case::build::{cut_network, doubts};
 use fractum_case::{Diagnostic, Severity, parse_case, read_case};
 use fractum_math::Vec3;
-use fractum_mesh::generate::structured_box;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
 use fractum_mesh::{Group, Mesh, read_msh};
 use fractum_output::warning::Code;
 
@@ -47,8 +47,8 @@ fn no_case_of_the_gallery_and_no_template_is_doubted() {
             mesh.nodes.iter_mut().for_each(|node| *node *= unit);
             mesh
         });
-        // These have two elements through the thickness, to show what that costs, or far from where they are looked at.
-        let is_thin = ["depth-2", "ball-on-edge"].iter().any(|name| path.to_string_lossy().contains(name));
+        // These have few elements through the thickness, to show what that costs, or far from where they are looked at.
+        let is_thin = ["cantilever", "ball-on-edge"].iter().any(|name| path.to_string_lossy().contains(name));
         // Of the source, on elements of half a front.
         let is_short = path.to_string_lossy().contains("granite-cylinder/pulse");
         // Cut short, since what a step costs is all that is asked.
@@ -119,6 +119,34 @@ fn doubted(old: &str, new: &str, words: &[&str]) {
     let all = said(old, new, 0.4, 0.0);
     assert_eq!(all.len(), 1, "{all:?}");
     assert!(words.iter().all(|word| all[0].contains(word)), "{all:?}");
+}
+
+/// Cantilevers of four elements through the thickness lose 16 % of their deflection in triangles and 17 to 20 % in tetrahedra of the plain formulation, less than
+/// 2 % in smoothed tetrahedra, and 7.6 % in triangles half as large.
+#[test]
+fn a_bent_body_is_told_what_its_elements_take_of_its_deflection() {
+    let plain = "kind = \"solid\"\nformulation = \"standard\"";
+    let bent = BAR
+        .replace("displacement = { x", "displacement = { y")
+        .replace("0.1 mm", "1 um")
+        .replace("kind = \"solid\"", plain);
+    let rectangle = |rows: u32| structured_rectangle([8 * rows, rows], [0.4, 0.05], None);
+    let block = |rows: u32| structured_box([8 * rows, rows, rows], Vec3::new(0.4, 0.05, 0.05), None);
+    let flat = bent.replace("fix = \"yz\"", "fix = \"xy\"");
+    for (case, mesh, least, most) in
+        [(&flat, rectangle(4), 13.0, 18.0), (&flat, rectangle(6), 6.0, 9.0), (&bent, block(4), 15.0, 20.0)]
+    {
+        let all = said_of(case, &mesh);
+        let told: Vec<&String> = all.iter().filter(|text| text.contains("is bent")).collect();
+        let [text] = told.as_slice() else { panic!("{all:?}") };
+        let share = text.split("take some ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        assert!((least..most).contains(&share.parse::<f64>().unwrap()), "{text}");
+        assert!(text.contains("formulation = \"smoothed\""), "{text}");
+    }
+    for (case, mesh) in [(flat, rectangle(12)), (bent.replace(plain, "kind = \"solid\""), block(4))] {
+        let all = said_of(&case, &mesh);
+        assert!(!all.iter().any(|text| text.contains("is bent")), "{all:?}");
+    }
 }
 
 #[test]
