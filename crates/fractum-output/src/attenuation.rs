@@ -42,10 +42,23 @@ pub struct Station {
     pub time: f64,
 }
 
+/// Part of a run after which the largest velocity of a station is not known to be its peak: the wave has not passed.
+const LATE: f64 = 0.99;
+
+impl Station {
+    /// Whether its velocity was still growing as the run ended.
+    ///
+    /// - `end`: when that was [s]
+    pub fn is_late(&self, end: f64) -> bool {
+        self.velocity > 0.0 && self.time > LATE * end
+    }
+}
+
 impl Attenuation {
-    /// The law of these stations.
-    pub fn new(name: &str, unit: &str, stations: Vec<Station>) -> Self {
-        let moved = stations.iter().filter(|station| station.velocity > 0.0 && station.scaled_distance > 0.0);
+    /// The law of these stations, without those at rest and those whose velocity was still growing at the `end` [s].
+    pub fn new(name: &str, unit: &str, stations: Vec<Station>, end: f64) -> Self {
+        let counts = |of: &&Station| of.velocity > 0.0 && of.scaled_distance > 0.0 && !of.is_late(end);
+        let moved = stations.iter().filter(counts);
         let points: Vec<[f64; 2]> = moved.map(|station| [ln(station.scaled_distance), ln(station.velocity)]).collect();
         let line = line_through(&points);
         Attenuation {
@@ -121,22 +134,31 @@ mod tests {
 
     #[test]
     fn a_power_law_is_found_again() {
-        let law = Attenuation::new("east", "-", stations(|s| 3.5 * s.powf(-1.6)));
+        let law = Attenuation::new("east", "-", stations(|s| 3.5 * s.powf(-1.6)), 1.0);
         assert!((law.intercept / 3.5 - 1.0).abs() < 1e-12 && (law.exponent - 1.6).abs() < 1e-12, "{law:?}");
         assert!((law.r_squared - 1.0).abs() < 1e-12 && (law.velocity(4.0) / 3.5 / 4f64.powf(-1.6) - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn stations_that_rest_are_left_out_and_too_few_make_no_law() {
-        let law = Attenuation::new("east", "-", stations(|s| if s > 8.0 { 0.0 } else { 1.0 / s }));
+        let law = Attenuation::new("east", "-", stations(|s| if s > 8.0 { 0.0 } else { 1.0 / s }), 1.0);
         assert!((law.exponent - 1.0).abs() < 1e-12);
-        assert!(Attenuation::new("east", "-", stations(|_| 0.0)).exponent.is_nan());
-        assert!(Attenuation::new("east", "-", stations(|s| if s > 1.0 { 0.0 } else { 1.0 })).exponent.is_nan());
+        assert!(Attenuation::new("east", "-", stations(|_| 0.0), 1.0).exponent.is_nan());
+        assert!(Attenuation::new("east", "-", stations(|s| if s > 1.0 { 0.0 } else { 1.0 }), 1.0).exponent.is_nan());
+    }
+
+    #[test]
+    fn stations_that_the_wave_has_not_passed_are_left_out() {
+        let mut all = stations(|s| 3.5 * s.powf(-1.6));
+        (all[5].velocity, all[5].time) = (1e-3, 1.0);
+        assert!(all[5].is_late(1.0) && !all[4].is_late(1.0));
+        let law = Attenuation::new("east", "-", all, 1.0);
+        assert!((law.exponent - 1.6).abs() < 1e-12 && law.stations.len() == 6, "{law:?}");
     }
 
     #[test]
     fn every_line_has_the_columns_of_the_header() {
-        let text = to_csv(&[Attenuation::new("east", "m/kg^(1/2)", stations(|s| 1.0 / s))]);
+        let text = to_csv(&[Attenuation::new("east", "m/kg^(1/2)", stations(|s| 1.0 / s), 1.0)]);
         assert_eq!(text.lines().count(), 7);
         assert!(text.lines().all(|line| line.split(',').count() == 10), "{text}");
         assert!(text.lines().nth(2).unwrap().starts_with("\"east\",0,0,0,2,2,m/kg^(1/2),0.5,0,"));

@@ -346,7 +346,7 @@ mod tests {
                 velocity: moves / f64::from(i * i),
                 ..Station::default()
             };
-            Attenuation::new(name, unit, (1..5).map(station).collect())
+            Attenuation::new(name, unit, (1..5).map(station).collect(), 1.0)
         };
         let lines = [line("east", "-", 2.0), line("north", "-", 0.0), line("far", "m/kg^(1/2)", 1.0)];
         let charts = attenuations(&lines);

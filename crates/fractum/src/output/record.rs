@@ -184,7 +184,9 @@ impl Recorder {
     }
 
     /// Largest velocities against distance, with their laws.
-    pub(crate) fn attenuations(&self) -> Vec<Attenuation> {
+    ///
+    /// - `end`: when the run has ended [s]
+    pub(crate) fn attenuations(&self, end: f64) -> Vec<Attenuation> {
         let station = |of: &VelocityStation, peak: &PeakVelocity, scale: f64| {
             let StationPlace { place, distance, .. } = of.places[peak.place as usize];
             let (velocity, time) = (peak.velocity, peak.time);
@@ -192,7 +194,7 @@ impl Recorder {
         };
         let table = |(of, peaks): (&PpvStations, &Vec<PeakVelocity>)| {
             let stations = of.stations.iter().zip(peaks).map(|(own, peak)| station(own, peak, of.scale));
-            Attenuation::new(&of.name, of.unit, stations.collect())
+            Attenuation::new(&of.name, of.unit, stations.collect(), end)
         };
         self.ppv.iter().zip(&self.state.peaks).map(table).collect()
     }

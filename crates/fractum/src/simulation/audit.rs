@@ -107,6 +107,25 @@ impl Simulation {
         })
     }
 
+    /// Warns of stations whose velocity was still growing as the run ended: their largest one is no peak.
+    ///
+    /// - `end`: when that was [s]
+    pub(super) fn warn_of_late_stations(&mut self, end: f64) -> Result<(), Failure> {
+        for of in self.recorder.attenuations(end) {
+            let late = of.stations.iter().filter(|station| station.is_late(end)).count();
+            if late > 0 {
+                let text = format!(
+                    "{late} of the {} stations \"{}\" have their largest velocity as the run ends: the wave has not passed them, and they are no part of the power law",
+                    of.stations.len(),
+                    of.name
+                );
+                let found = Warning::new(Code::EndsEarly, "output.ppv", text);
+                self.warn(found.remedy("choose a later end, or nearer stations"))?;
+            }
+        }
+        Ok(())
+    }
+
     /// Warns of bodies at rest that do not bear their loads.
     fn warn_of_giving_way(&mut self) -> Result<(), Failure> {
         if !self.solver.has_given_way(&self.scene) {

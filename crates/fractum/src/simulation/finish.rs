@@ -51,6 +51,7 @@ impl Simulation {
             self.messages.progress.finish(&self.snapshot(), self.started.elapsed());
         }
         let pieces = self.scene.fragments();
+        self.warn_of_late_stations(clock.time)?;
         let end = self.audit_end(end)?;
         let (status, reason) = (end.status(), end.reason());
         // All files of the end get their names together.
@@ -65,7 +66,7 @@ impl Simulation {
             probes: summary::probes(&self.case, &self.recorder),
             breakage: Breakage {
                 fragment_sizes: summary::fragment_sizes(&self.scene.solid, &pieces),
-                ppv: self.recorder.attenuations(),
+                ppv: self.recorder.attenuations(clock.time),
                 largest_overlap: self.recorder.largest_overlap().cloned(),
             },
             mesh: self.about.mesh.clone(),
