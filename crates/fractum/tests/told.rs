@@ -191,6 +191,91 @@ end = "0.35 ms"
 history = { every = "50 us" }
 "#;
 
+/// Stations along a bar that a pulse runs through in 60 us.
+const STATIONS: &str = r#"fractum = 1
+[mesh]
+file = "bar.msh"
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "stone"
+thickness = "10 mm"
+[[loads]]
+group = "x-"
+pressure = { pulse = "half-sine", peak = "1 MPa", duration = "10 us" }
+[solver]
+end = "60 us"
+[[output.ppv]]
+name = "axis"
+hole = "x-"
+centre = ["-10 mm", "10 mm", 0]
+line = { from = ["10 mm", "10 mm", 0], to = ["150 mm", "10 mm", 0], stations = 10 }
+"#;
+
+/// The wave of a plane pulse keeps its velocity, so that b is zero: stations that it had not passed made b 8 and more, without a word.
+#[test]
+fn stations_that_the_wave_has_not_passed_are_told_and_make_no_law() {
+    let mesh = mesh_bytes(&structured_rectangle([100, 10], [0.2, 0.02], None), MshFormat::V4_1Binary);
+    for (end, late) in [("60 us", false), ("30 us", true)] {
+        let place = Workplace::with_mesh(&STATIONS.replace("60 us", end), &mesh);
+        let summary = run(&place, "out", "1");
+        let told = listed(&place, "out").into_iter().filter(|[code, ..]| code == "ends-early").collect::<Vec<_>>();
+        assert_eq!(told.len(), usize::from(late), "{end}: {told:?}");
+        assert!(told.iter().all(|[_, site, text]| site == "output.ppv" && text.contains("\"axis\"")), "{told:?}");
+        let exponent = summary["ppv"][0]["exponent"].as_f64().unwrap();
+        assert!(exponent.abs() < 0.05, "{end}: b = {exponent}");
+    }
+}
+
+/// A bonded bar at rest whose ends are turned together.
+const TURNED_AT_REST: &str = r#"fractum = 1
+[parameters]
+turn = "30 deg"
+[materials.stone]
+density = "2500 kg/m^3"
+young_modulus = "50 GPa"
+poisson_ratio = 0.2
+[materials.stone.bonds]
+coordination = 8
+convention = "all"
+radius_ratio = 0.5
+young_modulus = "60 GPa"
+[[bodies]]
+name = "bar"
+kind = "bonded"
+material = "stone"
+shape = "box"
+size = ["40 mm", "10 mm", "10 mm"]
+particles = 400
+[[supports]]
+where = "x < 5 mm || x > 35 mm"
+group = "bar"
+displacement = { x = "(x*(cos(turn) - 1) - y*sin(turn))*t/1 s", y = "(x*sin(turn) + y*(cos(turn) - 1))*t/1 s", z = "0 m" }
+[solver]
+kind = "static"
+end = "1 s"
+"#;
+
+/// Beams at rest know small rotations alone: 30 degrees stretched them by 13 %, without a word.
+#[test]
+fn a_bonded_body_that_turns_at_rest_is_told() {
+    for (turn, told) in [("30 deg", true), ("3 deg", false)] {
+        let place = Workplace::new(&TURNED_AT_REST.replace("30 deg", turn));
+        run(&place, "out", "1");
+        let found = listed(&place, "out").into_iter().filter(|[code, ..]| code == "rotation").collect::<Vec<_>>();
+        assert_eq!(found.len(), usize::from(told), "{turn}: {found:?}");
+        assert!(
+            found.iter().all(|[_, site, text]| site.contains("body \"bar\"") && text.contains("turned by")),
+            "{found:?}"
+        );
+    }
+}
+
 #[test]
 fn a_body_that_turns_is_corotational_by_itself() {
     const DAMAGE: &str = "damage = { tensile_strength = \"30 MPa\", fracture_energy = \"200 N/m\" }";

@@ -13,7 +13,7 @@ const STOPPED: f64 = 0.05;
 /// Share of the elastic energy of contact and solids, over the run so far, that the springs of contact may hold: a force lacks it.
 const SOFT: f64 = 0.05;
 /// Rotation of a body of small strains [rad], 10 degrees: it adds a strain of 1.5 %.
-const TURNED: f64 = std::f64::consts::PI / 18.0;
+pub(crate) const TURNED: f64 = std::f64::consts::PI / 18.0;
 /// Strain beyond which the law of small stretches is off by as much.
 const STRAINED: f64 = 0.05;
 /// Stress over the strength that is told where nothing can break.

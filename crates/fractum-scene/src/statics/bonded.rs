@@ -2,8 +2,8 @@
 
 use fractum_dem::criterion::{BeamRankine, EndMoments, FractureCriterion};
 use fractum_dem::{
-    Batch, BondEnergy, Breaking, Crack, DemError, Lattice, LatticeSupports, LoadStage, QuasiStatic, QuasiStaticState,
-    StaticBody, Tolerance,
+    Batch, BondEnergy, Breaking, Crack, DemError, Dof6, Lattice, LatticeSupports, LoadStage, QuasiStatic,
+    QuasiStaticState, StaticBody, Tolerance,
 };
 use fractum_math::{Vec3, rotation_by};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use crate::bonded::{Bonded, BondedBody, Closest};
 use crate::error::{SceneError, StepError};
 use crate::ledger::EnergyKind;
+use crate::measure::audit::TURNED;
 use crate::scene::Scene;
+use crate::watch::{Notice, Site};
 
 /// How a bonded body is brought from break to break.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -204,6 +206,7 @@ impl BondedStatics {
         supports.set_reactions(|particle, axis| self.run.reaction(particle)[axis]);
         let body = &mut bodies[0];
         note_closest(body, &self.run, reference, time);
+        let turned = angle_of_most(&self.run.displacements());
         // Parts of the energy as the beams show them; their sum is that of the equilibrium.
         let parts = body.bonds.energy(particles);
         let scale = if parts.total() > 0.0 { point.elastic / parts.total() } else { 0.0 };
@@ -218,6 +221,9 @@ impl BondedStatics {
         scene.ledger[EnergyKind::Removed] = broken;
         scene.ledger[EnergyKind::Damping] = self.sudden;
         scene.ledger.update_maxima();
+        if let Some((particle, angle)) = turned.filter(|(_, angle)| *angle > TURNED) {
+            scene.note(Notice::Rotation, Site::Particle(particle), angle);
+        }
     }
 
     /// Breaks what fails and finds equilibrium again.
@@ -260,6 +266,15 @@ impl BondedStatics {
         }
         Ok(())
     }
+}
+
+/// The angle [rad] that half of all particles have turned by, and one that has turned by it: single ones may hang on a bond and turn far.
+fn angle_of_most(displacements: &[Dof6]) -> Option<(u32, f64)> {
+    let turned = (0..).zip(displacements).map(|(i, u)| (i, Vec3::new(u[3], u[4], u[5]).norm()));
+    let mut turned: Vec<(u32, f64)> = turned.collect();
+    let middle = turned.len() / 2;
+    (!turned.is_empty())
+        .then(|| *turned.select_nth_unstable_by(middle, |a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0))).1)
 }
 
 /// Keeps the largest ratio.
