@@ -58,7 +58,7 @@ fn part(name: &str, particles: Particles, bonded: bool, strength: Option<f64>) -
 fn of_particles(parts: Vec<BondedPart>, end: f64) -> Scene {
     let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
     let debris = Debris::new(&solid, Vec::new());
-    let material = ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE };
+    let material = ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 };
     let materials = vec![material; parts.len()];
     let bonded = Bonded::new(parts).unwrap();
     let contacts = Contacts::new(&bonded, materials, Vec::new(), Vec::new(), Vec::new());
@@ -239,7 +239,8 @@ fn a_solid_that_is_blind_to_tied_particles_does_not_meet_those_that_have_left() 
         let surface = SolidSurface::new(&solid, 0, SURFACE, &facets[0]).unwrap();
         let solids = vec![surface.without([1].into_iter(), &beads.radius)];
         let bonded = Bonded::new(vec![part("beads", beads, false, None)]).unwrap();
-        let materials = vec![ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE }];
+        let materials =
+            vec![ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 }];
         let contacts = Contacts::new(&bonded, materials, Vec::new(), solids, Vec::new());
         let debris = Debris::new(&solid, vec![SURFACE]);
         let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &solid.reference).unwrap());
@@ -271,7 +272,8 @@ fn a_solid_leaves_beside_others_that_rest_on_facets_of_each_other() {
         beads.position[1] = Vec3::new(0.05, 0.05, 0.4);
         beads.velocity[1].z = 55.0;
         let bonded = Bonded::new(vec![part("beads", beads, false, None)]).unwrap();
-        let materials = vec![ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE }];
+        let materials =
+            vec![ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 }];
         let contacts = Contacts::new(&bonded, materials, Vec::new(), solids, Vec::new());
         let debris = Debris::new(&solid, vec![SURFACE; 3]);
         let (loads, supports) = (Loads::new(Vec::new(), surface.len()), Supports::new(Vec::new(), &solid.reference));

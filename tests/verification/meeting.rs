@@ -112,7 +112,7 @@ pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
         };
         bonded = Bonded::new(vec![part]).unwrap();
         let elastic = ElasticMaterial { young_modulus: 10e9, poisson_ratio: 0.2 };
-        materials.push(ContactMaterial { elastic, density: 2400.0, surface: SURFACE });
+        materials.push(ContactMaterial { elastic, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 });
     }
     let ground = |(body, facets): (usize, &Vec<[u32; 3]>)| SolidSurface::new(&solid, body, SURFACE, facets).unwrap();
     let solids = all_facets.iter().enumerate().map(ground).collect();
@@ -417,7 +417,7 @@ fn flat_cube(velocity: Vec3, spin: Vec3) -> Scene {
     let elastic = ElasticMaterial { young_modulus: 1e9, poisson_ratio: 0.2 };
     let form = Form::Shape { shape: Shape::HalfSpace, hollow: false };
     let plane = RigidBody::new("plane", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
-    let materials = vec![ContactMaterial { elastic, density: 2400.0, surface: SURFACE }];
+    let materials = vec![ContactMaterial { elastic, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 }];
     let mut contacts = Contacts::new(&bonded, materials, vec![plane], Vec::new(), Vec::new());
     let shift = cells().map(|cell| cell * FACE).collect();
     let faces = FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift };

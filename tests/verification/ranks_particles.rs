@@ -68,13 +68,16 @@ fn breaking(criterion: Option<FractureCriterion>, volume: f64) -> Option<BondFra
     })
 }
 
-/// A scene of particles alone.
-fn scene(bonded: Bonded, rigid_bodies: Vec<RigidBody>, settings: SceneSettings) -> Scene {
+/// A scene of particles alone, the loose ones of which stick with a work of adhesion [J/m²].
+fn scene(bonded: Bonded, rigid_bodies: Vec<RigidBody>, settings: SceneSettings, adhesion: f64) -> Scene {
     let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
     let debris = Debris::new(&solid, Vec::new());
-    let material = ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE };
-    let mut contacts =
-        Contacts::new(&bonded, vec![material; bonded.bodies().len()], rigid_bodies, Vec::new(), Vec::new());
+    let material = |body: &fractum_scene::BondedBody| {
+        let work_of_adhesion = if body.bonds.is_empty() { adhesion } else { 0.0 };
+        ContactMaterial { elastic: ELASTIC, density: 2400.0, surface: SURFACE, work_of_adhesion }
+    };
+    let materials = bonded.bodies().iter().map(material).collect();
+    let mut contacts = Contacts::new(&bonded, materials, rigid_bodies, Vec::new(), Vec::new());
     let flat = |body: &fractum_scene::BondedBody| {
         let shift = body.range.clone().map(|_| Vec3::z() * (-0.02 * RADIUS)).collect();
         (!body.bonds.is_empty()).then_some(FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift })
@@ -105,7 +108,7 @@ fn pulled(law: impl Into<AnyBondLaw>, fracture: Option<BondFracture>, speed: f64
     bonded.set_dissipation(1.1);
     let mut settings = settings(1.0, 1e9);
     settings.damping = LocalDamping { local: 0.05, mass_rate: 1.0 };
-    scene(bonded, Vec::new(), settings)
+    scene(bonded, Vec::new(), settings, 0.0)
 }
 
 const VOLUME: f64 = 34.0 * 14.0 * 14.0 * 8.0 * RADIUS * RADIUS * RADIUS;
@@ -138,7 +141,9 @@ fn bonds_that_separate_by_their_law_have_the_same_bits_on_any_number_of_ranks() 
 }
 
 /// A bonded block, and a cloud of loose beads in two layers that fall on it and on a rigid plane; what flies off leaves.
-fn beads() -> Scene {
+///
+/// - `adhesion`: work of adhesion of the beads and of the plane [J/m²]
+fn beads(adhesion: f64) -> Scene {
     let cells = [20, 12, 12];
     let block = BondedPart {
         fracture: breaking(
@@ -153,16 +158,21 @@ fn beads() -> Scene {
     let mut bonded = Bonded::new(vec![block, cloud]).unwrap();
     bonded.set_loads(vec![Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -9.81) })]);
     let form = Form::Shape { shape: Shape::HalfSpace, hollow: false };
-    let plane = RigidBody::new("plane", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
+    let mut plane = RigidBody::new("plane", form, Frame::at_rest(), ElasticMaterial::RIGID, SURFACE);
+    plane.work_of_adhesion = adhesion;
     let domain = Domain { min: Vec3::new(-0.0895, -1.0, -1.0), max: Vec3::repeat(1.0) };
-    scene(bonded, vec![plane], settings(1.0, 1e9)).with_domain(domain)
+    scene(bonded, vec![plane], settings(1.0, 1e9), adhesion).with_domain(domain)
 }
 
 #[test]
 fn loose_beads_on_a_bonded_block_on_a_plane_have_the_same_bits_on_any_number_of_ranks() {
-    let single = same_on_ranks(500, beads);
-    let counts = single.counts();
-    assert!(counts.contacts > 200 && single.left().pieces > 0, "{counts:?} {:?}", single.left());
+    let contacts = [0.0, 50.0].map(|adhesion| {
+        let single = same_on_ranks(500, || beads(adhesion));
+        let counts = single.counts();
+        assert!(counts.contacts > 200 && single.left().pieces > 0, "{counts:?} {:?}", single.left());
+        counts.contacts
+    });
+    assert!(contacts[1] > contacts[0], "beads that stick: {contacts:?}");
 }
 
 /// A block that breaks on another one, with beads around whose forces on both are asked for: they meet facets, discrete elements and each other.

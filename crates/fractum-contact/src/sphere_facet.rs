@@ -23,6 +23,8 @@ const BLOCK: usize = 256;
 #[derive(Clone, Debug)]
 pub struct SurfaceContacts<L: ContactLaw> {
     skin: f64,
+    /// Gap across which laws act at most [m].
+    reach: f64,
     blocks: Vec<Block<L>>,
     /// Centres at the last search, in the axes of the ground [m].
     searched_at: Vec<Vec3>,
@@ -41,12 +43,18 @@ impl<L: ContactLaw> SurfaceContacts<L> {
     pub fn new(skin: f64) -> Self {
         SurfaceContacts {
             skin,
+            reach: 0.0,
             blocks: Vec::new(),
             searched_at: Vec::new(),
             points_at: Vec::new(),
             tree: None,
             depth: None,
         }
+    }
+
+    /// The same for laws that act across gaps up to `reach` [m].
+    pub fn with_reach(self, reach: f64) -> Self {
+        SurfaceContacts { reach, ..self }
     }
 
     /// The same on facets that look outward: centres that are up to `depth` [m] behind them are within the ground, which
@@ -97,7 +105,7 @@ impl<L: ContactLaw> SurfaceContacts<L> {
     }
 
     fn find_near(&mut self, ground: &Surface, radii: &[f64]) {
-        let (centres, skin, depth) = (&self.searched_at, self.skin, self.depth.unwrap_or(0.0));
+        let (centres, skin, depth) = (&self.searched_at, self.skin + self.reach, self.depth.unwrap_or(0.0));
         let spheres: Vec<u32> = (0..centres.len() as u32).filter(|&i| radii[i as usize] >= 0.0).collect();
         let near: Vec<Vec<(u32, Vec<u32>)>> = match ground {
             Surface::Shape { shape, hollow, .. } => spheres
@@ -154,8 +162,8 @@ impl<L: ContactLaw> SurfaceContacts<L> {
     /// - `law`: law of a sphere on this ground, where its mean curvature is the second argument [1/m]
     /// - `dt` [s]: the step that led here
     pub fn update(&mut self, ground: &Surface, spheres: &Spheres, law: impl Fn(u32, f64) -> L + Sync, dt: f64) -> Work {
-        let depth = self.depth;
-        self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, &law, dt));
+        let (depth, reach) = (self.depth, self.reach);
+        self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, reach, &law, dt));
         let mut work = Work::default();
         for block in &self.blocks {
             work += block.ended;

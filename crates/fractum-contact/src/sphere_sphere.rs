@@ -21,6 +21,8 @@ pub const SUMMED_SPHERES: usize = 1024;
 #[derive(Clone, Debug)]
 pub struct SphereContacts<L: ContactLaw> {
     skin: f64,
+    /// Gap across which laws act at most [m].
+    reach: f64,
     searched_at: Vec<Vec3>,
     /// Near pairs, ascending.
     pairs: Vec<[u32; 2]>,
@@ -57,6 +59,7 @@ impl<L: ContactLaw> SphereContacts<L> {
     pub fn new(skin: f64) -> Self {
         SphereContacts {
             skin,
+            reach: 0.0,
             searched_at: Vec::new(),
             pairs: Vec::new(),
             laws: Vec::new(),
@@ -69,6 +72,11 @@ impl<L: ContactLaw> SphereContacts<L> {
             works: Vec::new(),
             cut: None,
         }
+    }
+
+    /// The same for laws that act across gaps up to `reach` [m].
+    pub fn with_reach(self, reach: f64) -> Self {
+        SphereContacts { reach, ..self }
     }
 
     /// Renews the list of near pairs if the skin is used up; true if it did.
@@ -96,7 +104,7 @@ impl<L: ContactLaw> SphereContacts<L> {
     pub fn renew(&mut self, spheres: &Spheres, law: impl Fn(u32, u32) -> Option<L> + Sync) {
         self.searched_at.clear();
         self.searched_at.extend_from_slice(spheres.position);
-        let near = close_pairs(spheres.position, spheres.radius, self.skin);
+        let near = close_pairs(spheres.position, spheres.radius, self.skin + self.reach);
         let found: Vec<([u32; 2], L)> =
             near.into_par_iter().filter_map(|[i, j]| law(i, j).map(|law| ([i, j], law))).collect();
         let old = std::mem::take(&mut self.pairs);
@@ -356,7 +364,8 @@ fn pair_load<L: ContactLaw>(
     let apart = spheres.position[j] - spheres.position[i];
     let reach = spheres.radius[i] + spheres.radius[j];
     let square = apart.norm_squared();
-    let touches = square < reach * reach;
+    let felt = reach + law.reach();
+    let touches = square < felt * felt;
     if !touches && !*touching {
         return None;
     }

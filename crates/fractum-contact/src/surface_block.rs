@@ -53,6 +53,7 @@ impl<L: ContactLaw> Block<L> {
         ground: &Surface,
         spheres: &Spheres,
         depth: Option<f64>,
+        reach: f64,
         law: &(impl Fn(u32, f64) -> L + Sync),
         dt: f64,
     ) {
@@ -69,7 +70,11 @@ impl<L: ContactLaw> Block<L> {
             }
             let old = first_old..next_old;
             let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
-            find_feet(ground, facets, centre, radius, depth, &mut self.hierarchy, &mut self.feet);
+            let farthest = radius + reach;
+            find_feet(ground, facets, centre, farthest, depth, &mut self.hierarchy, &mut self.feet);
+            if reach > 0.0 {
+                self.feet.retain(|foot| foot.distance < radius + law(sphere, foot.curvature).reach());
+            }
             if self.feet.is_empty() && old.is_empty() {
                 continue;
             }
@@ -242,7 +247,7 @@ fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L, ground: &Surface, sph
     let (ground_velocity, ground_spin) = ground.motion_at(touch.feature, &(spheres.position[i] + touch.offset));
     let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&touch.offset);
     let spin = ground_spin - spheres.spin[i];
-    let motion = PairMotion { normal: touch.normal, overlap: 0.0, velocity, spin, dt };
+    let motion = PairMotion { normal: touch.normal, overlap: -law.reach(), velocity, spin, dt };
     let force = law.force(&motion, &mut memory);
     Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
 }

@@ -3,6 +3,7 @@
 mod common;
 
 mod accuracy;
+mod adhesion;
 mod axisymmetric;
 mod bonded;
 mod book;

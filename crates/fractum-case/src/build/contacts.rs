@@ -140,15 +140,16 @@ fn wall_doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
 fn contact_materials(context: &Context<'_>) -> Vec<ContactMaterial> {
     let materials = &context.case.materials;
     let material = |body: &Body| match &body.kind {
-        BodyKind::Bonded(own) => Some((own.material, body.kind.surface(materials))),
-        BodyKind::Particles(own) => Some((own.material, body.kind.surface(materials))),
+        BodyKind::Bonded(own) => Some((own.material, body.kind.surface(materials), false)),
+        BodyKind::Particles(own) => Some((own.material, body.kind.surface(materials), true)),
         _ => None,
     };
-    let contact = |(material, surface): (usize, ContactParameters)| {
+    let contact = |(material, surface, sticks): (usize, ContactParameters, bool)| {
         let material = &materials[material];
         let modulus = material.contact_modulus.unwrap_or(material.young_modulus);
         let elastic = elastic(modulus, material.poisson_ratio);
-        ContactMaterial { elastic, density: material.density, surface }
+        let work_of_adhesion = if sticks { material.work_of_adhesion } else { 0.0 };
+        ContactMaterial { elastic, density: material.density, surface, work_of_adhesion }
     };
     context.case.bodies.iter().filter_map(material).map(contact).collect()
 }
@@ -307,6 +308,7 @@ pub(super) fn rigid_bodies(context: &mut Context<'_>, facets: Vec<PreparedFacets
             });
             let mut rigid_body =
                 RigidBody::new(&body.name.value, form, frame, elastic, body.kind.surface(&context.case.materials));
+            rigid_body.work_of_adhesion = rigid.work_of_adhesion;
             drive(&mut rigid_body, rigid);
             rigid_bodies.push(rigid_body);
         }

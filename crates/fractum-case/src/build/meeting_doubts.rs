@@ -224,6 +224,26 @@ pub(super) fn rebounds(case: &Case) -> Vec<Diagnostic> {
     case.bodies.iter().filter_map(doubt).collect()
 }
 
+/// A work of adhesion of bodies that do not stick, and of rigid bodies without particles that would stick to them.
+pub(super) fn adhesion_in_vain(case: &Case) -> Vec<Diagnostic> {
+    let of_material = |index: usize| case.materials[index].work_of_adhesion;
+    let sticks = |body: &Body| matches!(&body.kind, BodyKind::Particles(own) if of_material(own.material) > 0.0);
+    let any_sticks = case.bodies.iter().any(sticks);
+    let doubt = |body: &Body| {
+        let (work, why) = match &body.kind {
+            BodyKind::Solid(own) => (of_material(own.material), "solids do not stick"),
+            BodyKind::Bonded(own) => (of_material(own.material), "bonded bodies do not stick"),
+            BodyKind::Rigid(own) if !any_sticks => (own.work_of_adhesion, "no loose particles stick to it"),
+            BodyKind::Rigid(_) | BodyKind::Particles(_) => return None,
+        };
+        let found = format!("= \"{}\": the work_of_adhesion of its contact has no effect: {why}", body.name.value);
+        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
+        let remedy = "loose particles with a work_of_adhesion stick, to each other and to rigid bodies that have one; remove it here";
+        (work > 0.0).then(|| note.remedy(remedy))
+    };
+    case.bodies.iter().filter_map(doubt).collect()
+}
+
 /// Where a rigid body that does not turn is during the run, from where it starts [m]; none where that depends on forces, or it stays.
 fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
     let pushed = rigid.servo.is_some()

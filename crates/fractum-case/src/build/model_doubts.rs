@@ -12,7 +12,7 @@ use fractum_output::warning::Code;
 use super::body_doubts::{Own, pieces, thin, unheld};
 use super::idle_doubts::{measured_in_vain, taken_at_once, unmoved};
 use super::load_doubts::{doubts_of_loads, odd_reactions};
-use super::meeting_doubts::{coincident, meetings, missing, overlapping, rebounds, undamped};
+use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
 use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
 use crate::{Diagnostic, Spanned, TimeFunction};
 
@@ -60,6 +60,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(missing(case, mesh, &bodies));
     let without = undamped(case, mesh, &bodies);
     doubts.extend(if without.is_empty() { rebounds(case) } else { without });
+    doubts.extend(adhesion_in_vain(case));
     doubts.extend(unheld(case, mesh, &bodies));
     let joined = pieces(mesh, &bodies);
     let is_alone = |piece: u32| joined.iter().filter(|other| **other == piece).count() == 1;

@@ -34,6 +34,8 @@ pub struct Material {
     pub contact: ContactParameters,
     /// Young's modulus that contacts of its particles take [Pa], > 0; `None` = that of the material.
     pub contact_modulus: Option<f64>,
+    /// Work of adhesion between two of its loose particles [J/m²].
+    pub work_of_adhesion: f64,
 }
 
 impl Material {

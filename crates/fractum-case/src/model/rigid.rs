@@ -17,6 +17,8 @@ pub struct RigidBody {
     pub material: Option<usize>,
     /// Contact with it.
     pub contact: ContactParameters,
+    /// Work of adhesion between two such bodies [J/m²].
+    pub work_of_adhesion: f64,
     /// Prescribed velocity [m/s] along x, y, z; `None` = held, or free.
     pub velocity: Components,
     /// Prescribed angular velocity [rad/s] about axes through its reference point; `None` = held.

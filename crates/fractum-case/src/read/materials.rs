@@ -61,7 +61,8 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     );
     let thermal = super::heat::thermal(&table);
     let contact_modulus = contact_modulus(&table);
-    let contact = contact(&table, ContactParameters::default(), &["young_modulus"]);
+    let work_of_adhesion = work_of_adhesion(&table, 0.0);
+    let contact = contact(&table, ContactParameters::default(), &["young_modulus", "work_of_adhesion"]);
     table.finish("here");
     Some(Material {
         name,
@@ -76,6 +77,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         thermal: thermal?,
         contact,
         contact_modulus: contact_modulus?,
+        work_of_adhesion,
     })
 }
 
@@ -232,6 +234,11 @@ fn softening(damage: &Table<'_>) -> Option<Softening> {
 fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
     let contact = parent.table_or_empty("contact");
     contact.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).map(Some).or_if_absent(None)
+}
+
+/// Work of adhesion in a table `contact` [J/m²].
+pub(super) fn work_of_adhesion(parent: &Table<'_>, default: f64) -> f64 {
+    parent.table_or_empty("contact").quantity("work_of_adhesion").not_negative().or(default)
 }
 
 /// The `contact` table of a material or rigid body.

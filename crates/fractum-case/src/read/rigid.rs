@@ -33,7 +33,9 @@ const KINDS: [Kind; 6] = [Kind::Plane, Kind::Box, Kind::Cylinder, Kind::Sphere, 
 pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Option<&Material>) -> Option<RigidBody> {
     let kinds: Vec<(&'static str, Kind)> = SHAPES.into_iter().zip(KINDS).collect();
     let kind = table.one_of("shape", &kinds).required();
-    let contact = materials::contact(table, here.map(|material| material.contact).unwrap_or_default(), &[]);
+    let work_of_adhesion = materials::work_of_adhesion(table, here.map_or(0.0, |material| material.work_of_adhesion));
+    let contact =
+        materials::contact(table, here.map(|material| material.contact).unwrap_or_default(), &["work_of_adhesion"]);
     let solid_shape = matches!(kind, Some(Kind::Box | Kind::Cylinder | Kind::Sphere));
     if kind.is_some() && !solid_shape {
         table.refuse("inside", "but on a box, cylinder or sphere");
@@ -70,6 +72,7 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Op
         inside,
         material: material.map_or(Some(None), |index| index.map(Some))?,
         contact,
+        work_of_adhesion,
         velocity: velocity?,
         spin: spin?,
         free: free?,

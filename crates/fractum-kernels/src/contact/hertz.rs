@@ -5,6 +5,7 @@ use super::rolling::{Rolling, RollingMemory};
 use super::slip::slip_to_cone;
 use super::{ContactForce, ContactLaw, ContactParameters, PairMotion};
 use crate::Vec3;
+use crate::elementary::cbrt;
 #[cfg(not(feature = "std"))]
 use crate::exact::Exact as _;
 
@@ -41,6 +42,8 @@ pub struct MaterialPair {
     pub effective_modulus: f64,
     /// Effective shear modulus G* = 1/((2 - ν₁)/G₁ + (2 - ν₂)/G₂) [Pa].
     pub effective_shear_modulus: f64,
+    /// Work of adhesion W: energy that separates a unit of area [J/m²]; 0 without adhesion.
+    pub work_of_adhesion: f64,
     /// Friction and damping; a damping ratio ζ gives the restitution [`restitution_of_damping`](super::restitution_of_damping)
     /// at every speed.
     pub surface: ContactParameters,
@@ -54,8 +57,15 @@ impl MaterialPair {
         MaterialPair {
             effective_modulus: sum(ElasticMaterial::normal_compliance),
             effective_shear_modulus: sum(ElasticMaterial::shear_compliance),
+            work_of_adhesion: 0.0,
             surface,
         }
+    }
+
+    /// The same, with a work of adhesion W ≥ 0 [J/m²].
+    #[inline]
+    pub fn sticking(self, work_of_adhesion: f64) -> Self {
+        MaterialPair { work_of_adhesion, ..self }
     }
 }
 
@@ -65,6 +75,10 @@ impl MaterialPair {
 /// - tangential: stiffness 8 G* √(R* δ) on the slip s, Coulomb's limit μ F_n, damper c_t = c_n √(k_t/(3/2 k_h √δ))
 ///   while it sticks. Under growing load the force is kept and new slip meets the new stiffness; under falling load the
 ///   force falls with the stiffness: no path gains energy (Thornton, Cummins and Cleary 2011).
+///
+/// *Adhesion* pulls with F_a = 2π W R* beside Hertz' force (Derjaguin, Muller and Toporov 1975). Across a gap the pull falls linearly to zero at
+/// h = (F_a/k_h)^(2/3), the overlap of a pair without other forces. Its energy is -F_a (δ + h/2) in contact and -F_a (h + δ)²/2h across
+/// the gap. Friction and damping are those of the elastic part of the force.
 ///
 /// A *flat* contact has its full size from the first touch on, as that of a flat punch: F_n = k δ + c dδ/dt with constant
 /// stiffnesses, c = 2 ζ √(m* k). Where it begins or ends within a step its force is the one that gives back the energy
@@ -85,6 +99,10 @@ pub struct Hertz {
     pub friction: f64,
     /// Friction against rolling.
     pub rolling: Rolling,
+    /// Pull F_a of adhesion [N].
+    pub pull: f64,
+    /// Gap h across which it acts [m].
+    pub reach: f64,
     /// Effective mass m* [kg] of a flat contact, whose stiffnesses do not grow with the overlap; none of a round one.
     pub flat: Option<f64>,
 }
@@ -115,6 +133,8 @@ impl Hertz {
         let root = effective_radius.sqrt();
         let normal = 4.0 / 3.0 * pair.effective_modulus * root;
         let tangential = 8.0 * pair.effective_shear_modulus * root;
+        let pull = 2.0 * core::f64::consts::PI * pair.work_of_adhesion * effective_radius;
+        let reach = if pull > 0.0 { cbrt((pull / normal) * (pull / normal)) } else { 0.0 };
         Hertz {
             normal,
             tangential,
@@ -122,6 +142,8 @@ impl Hertz {
             damping_share: (tangential / (1.5 * normal)).sqrt(),
             friction: pair.surface.friction,
             rolling: Rolling::new(pair.surface.rolling_friction, effective_radius, effective_mass),
+            pull,
+            reach,
             flat: None,
         }
     }
@@ -139,6 +161,8 @@ impl Hertz {
             damping_share: (tangential / normal).sqrt(),
             friction: surface.friction,
             rolling: Rolling::new(surface.rolling_friction, arm, effective_mass),
+            pull: 0.0,
+            reach: 0.0,
             flat: Some(effective_mass),
         }
     }
@@ -159,8 +183,28 @@ impl Hertz {
     }
 }
 
+impl Hertz {
+    /// Pull [N] and energy [J] of adhesion at an overlap δ > -h.
+    #[inline]
+    fn adhesion(&self, overlap: f64) -> (f64, f64) {
+        if self.pull == 0.0 {
+            return (0.0, 0.0);
+        }
+        if overlap >= 0.0 {
+            return (self.pull, -self.pull * (overlap + 0.5 * self.reach));
+        }
+        let force = self.pull * (1.0 + overlap / self.reach);
+        (force, -0.5 * force * (self.reach + overlap))
+    }
+}
+
 impl ContactLaw for Hertz {
     type Memory = HertzMemory;
+
+    #[inline]
+    fn reach(&self) -> f64 {
+        self.reach
+    }
 
     #[inline]
     fn force(&self, motion: &PairMotion, memory: &mut HertzMemory) -> ContactForce {
@@ -170,9 +214,9 @@ impl ContactLaw for Hertz {
         let mut old = *memory;
         let old_stiffness = self.tangential * old.root;
         let old_spring = 0.5 * old_stiffness * old.slip.norm_squared();
-        let overlap_offset = old.overlap_offset.min(motion.overlap.max(0.0));
+        let overlap_offset = old.overlap_offset.min((motion.overlap + self.reach).max(0.0));
         let overlap = motion.overlap - overlap_offset;
-        if overlap <= 0.0 {
+        if overlap <= -self.reach {
             *memory = HertzMemory { overlap_offset, ..HertzMemory::default() };
             return ContactForce {
                 damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt
@@ -182,7 +226,9 @@ impl ContactLaw for Hertz {
                 ..ContactForce::default()
             };
         }
-        let (elastic, compressed, root) = self.elastic(overlap, approach * motion.dt, motion.dt, &mut old.spring);
+        let (pull, bound) = self.adhesion(overlap);
+        let (elastic, compressed, root) =
+            self.elastic(overlap.max(0.0), approach * motion.dt, motion.dt, &mut old.spring);
         let viscosity = self.damping * root.sqrt();
         let damper = (viscosity * approach).max(-elastic);
         let normal_force = elastic + damper;
@@ -215,13 +261,17 @@ impl ContactLaw for Hertz {
         let spring = 0.5 * stiffness * slip.norm_squared();
         let work = 0.5 * (turned * old_stiffness + slip * stiffness).dot(&across) * motion.dt;
         let mut force = ContactForce {
-            on_second: n * normal_force - slip * stiffness - drag,
+            on_second: n * (normal_force - pull) - slip * stiffness - drag,
             couple_on_second: Vec3::zeros(),
-            stored: compressed + spring,
+            stored: compressed + bound + spring,
             friction: work + old_spring - spring,
             damping: 0.5 * ((old.damper + damper) * approach + (old.drag + drag).dot(&across)) * motion.dt,
         };
-        if self.rolling.arm > 0.0 {
+        if self.rolling.arm > 0.0 && overlap <= 0.0 {
+            force.friction += old.rolling.stored();
+            force.damping += old.rolling.last_damping(motion);
+            memory.rolling = RollingMemory::default();
+        } else if self.rolling.arm > 0.0 {
             let normal_stiffness = self.stiffness(overlap).0;
             let rolled = self.rolling.couple(motion, normal_force, normal_stiffness, &mut memory.rolling);
             force.couple_on_second = rolled.on_second;

@@ -33,6 +33,12 @@ pub trait ContactLaw: Copy + Send + Sync {
     /// How much of the overlap gives no force [m].
     fn overlap_offset(memory: &Self::Memory) -> f64;
 
+    /// Gap across which it acts [m]; 0 where only what overlaps feels each other.
+    #[inline]
+    fn reach(&self) -> f64 {
+        0.0
+    }
+
     /// Normal and tangential stiffness at an overlap [m], in N/m.
     fn stiffness(&self, overlap: f64) -> (f64, f64);
 }

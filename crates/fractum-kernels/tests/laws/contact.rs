@@ -115,6 +115,91 @@ pub(crate) fn contact<L: ContactLaw>(
     hold((work - taken).abs() <= 0.03 * largest, || format!("took {taken} of {work}, {largest} at most"))
 }
 
+/// A pair that sticks, pressed together and pulled apart: its force is the derivative of its energy, the largest pull is that of DMT, nothing is left
+/// beyond its reach, nothing is gained on the way, and friction stays within the cone of what the contact bears.
+pub(crate) fn adhesion(draw: &mut Draw) -> Held {
+    let (young, nu, radii, masses) = bodies(draw);
+    let material = ElasticMaterial { young_modulus: young, poisson_ratio: nu };
+    let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
+    let (radius, mass, surface) = (reduced(radii), reduced(masses), surface(draw));
+    let energy = draw.over_decades(1e-3, 1e2);
+    let law = Hertz::new(&MaterialPair::new([material, material], surface).sticking(energy), radius, mass);
+    let pull = 2.0 * PI * energy * radius;
+    hold((law.pull / pull - 1.0).abs() < 1e-12, || format!("pulls with {} for {pull}", law.pull))?;
+    let reach = law.reach();
+    let deepest = reach * draw.over_decades(0.01, 30.0);
+    let (normal, across) = (draw.vector().normalize(), draw.vector());
+    let free = Hertz { damping: 0.0, ..law };
+    let still = |law: &Hertz, overlap: f64| {
+        let force = law.force(&resting(normal, overlap), &mut Default::default());
+        (force.on_second.dot(&normal), force.stored)
+    };
+    for share in [-0.99, -0.6, -0.1, 0.1, 0.7, 1.0, 3.0] {
+        let (at, step) = (share * reach, 1e-6 * reach);
+        let [below, above] = [at - step, at + step].map(|overlap| still(&free, overlap).1);
+        let (force, slope) = (still(&free, at).0, (above - below) / (2.0 * step));
+        hold((force - slope).abs() < 1e-4 * (pull + force.abs()), || format!("{force} at {share}, slope {slope}"))?;
+        hold(force >= -pull * (1.0 + 1e-12), || format!("pulls with {force}"))?;
+    }
+    hold((still(&free, 0.0).0 / pull + 1.0).abs() < 1e-12, || "another pull at the first touch".to_owned())?;
+    hold(still(&free, reach).0.abs() < 1e-9 * pull, || "no rest where the pull presses together".to_owned())?;
+    hold(still(&free, -reach).1 == 0.0 && still(&free, -2.0 * reach).0 == 0.0, || "acts beyond its reach".to_owned())?;
+    let steps = 2000;
+    let dt = PI * (mass / law.stiffness(reach).0).sqrt() / f64::from(steps);
+    let overlap = |step: i32| (deepest + 1.2 * reach) * (PI * f64::from(step) / f64::from(steps)).sin() - 1.2 * reach;
+    let (mut memory, mut work, mut taken, mut largest) = (Default::default(), 0.0, 0.0, 0.0f64);
+    let mut before = ContactForce::default();
+    let flat = (across - normal * across.dot(&normal)) * (reach / (dt * f64::from(steps)));
+    let mut last = 0.0;
+    for step in 1..=steps {
+        let approach = (overlap(step) - overlap(step - 1)) / dt;
+        let motion =
+            PairMotion { normal, overlap: overlap(step), velocity: flat - normal * approach, spin: across * 0.1, dt };
+        let force = law.force(&motion, &mut memory);
+        let along = force.on_second.dot(&normal);
+        let held = still(&free, overlap(step)).0;
+        let pulled = if overlap(step) >= 0.0 { pull } else { 0.0 };
+        let tangential = (force.on_second - normal * along).norm();
+        hold(tangential <= surface.friction * (along + pulled).max(0.0) * (1.0 + 1e-9) + 1e-9 * pull, || {
+            format!("friction {tangential} beyond the cone at step {step}")
+        })?;
+        hold(along >= -pull * (1.0 + 1e-9) && held.is_finite(), || format!("pulls with {along} at step {step}"))?;
+        hold(force.damping >= -1e-6 * largest, || format!("damping gives {}", force.damping))?;
+        work -= 0.5 * (before.on_second + force.on_second).dot(&motion.velocity) * dt;
+        work -= 0.5 * (before.couple_on_second + force.couple_on_second).dot(&motion.spin) * dt;
+        taken += force.friction + force.damping;
+        largest = largest.max(work.abs()).max(force.stored.abs());
+        (before, last) = (force, force.stored);
+    }
+    hold(last == 0.0, || format!("{last} J are left"))?;
+    hold((work - taken).abs() < 0.02 * largest, || format!("work {work}, taken {taken}, largest {largest}"))?;
+    // A pair whose overlap was taken as it stands is at its first touch there, until it has parted.
+    let (mut memory, found) = (Default::default(), 3.0 * reach);
+    Hertz::add_overlap_offset(&mut memory, found);
+    let overlap = |step: i32| {
+        let share = f64::from(step) / f64::from(steps);
+        found + reach * (2.0 * (PI * share).sin() - 4.2 * share)
+    };
+    let (mut work, mut before) = (0.0, free.force(&resting(normal, found), &mut memory));
+    hold((before.on_second.dot(&normal) / pull + 1.0).abs() < 1e-9, || format!("{before:?} where it was found"))?;
+    let bound = before.stored;
+    for step in 1..=steps {
+        let velocity = normal * ((overlap(step - 1) - overlap(step)) / dt);
+        let force = free.force(&PairMotion { velocity, dt, ..resting(normal, overlap(step)) }, &mut memory);
+        work -= 0.5 * (before.on_second + force.on_second).dot(&velocity) * dt;
+        before = force;
+    }
+    hold((work + bound).abs() < 1e-3 * pull * reach && before.stored == 0.0, || {
+        format!("parting took {work} J of {bound}, {} J are left", before.stored)
+    })
+}
+
+/// A pair at rest.
+fn resting(normal: fractum_kernels::Vec3, overlap: f64) -> PairMotion {
+    let zero = fractum_kernels::Vec3::zeros();
+    PairMotion { normal, overlap, velocity: zero, spin: zero, dt: 1e-6 }
+}
+
 /// A flat contact, with its full stiffness from the first touch.
 pub(crate) fn hertz_flat(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
     let (young, nu, radii, masses) = bodies(draw);

@@ -81,6 +81,7 @@ const LAWS: &[Row] = &[
             contact::contact(draw, law, true)
         },
     },
+    Row { law: "contact, adhesion", holds: contact::adhesion },
     Row { law: "restitution", holds: contact::restitution },
     Row { law: "edge, exponential", holds: |draw| damage::way(draw, Softening::Exponential, false) },
     Row { law: "edge, linear", holds: |draw| damage::way(draw, Softening::Linear, false) },

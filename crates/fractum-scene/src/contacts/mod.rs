@@ -60,6 +60,8 @@ pub struct ContactMaterial {
     pub density: f64,
     /// Friction and damping.
     pub surface: ContactParameters,
+    /// Work of adhesion between two such bodies [J/m²].
+    pub work_of_adhesion: f64,
 }
 
 /// Contacts of all particles with nodes of their own, by Hertz' law, and the rigid bodies among them.
@@ -86,6 +88,11 @@ pub struct Contacts {
     flat: FlatBodies,
     /// Forces between bodies that probes ask for [N].
     watched: Vec<(ContactProbe, f64)>,
+}
+
+/// Work of adhesion of two materials by those of each with itself [J/m²] (Berthelot).
+fn adhesion(first: f64, second: f64) -> f64 {
+    (first * second).sqrt()
 }
 
 /// A function of time that can be shown.
@@ -146,15 +153,23 @@ impl Contacts {
             body[part.range.clone()].fill(index);
         }
         let pair = |a: &ContactMaterial, b: &ContactMaterial| {
-            MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface))
+            let pair = MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface));
+            pair.sticking(adhesion(a.work_of_adhesion, b.work_of_adhesion))
         };
         let smallest = bonded.particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
         let skin = SKIN * smallest;
+        // The reach grows with the cube root of the radius; a hollow may be felt as a larger one.
+        let largest = bonded.particles.radius.iter().copied().fold(0.0, f64::max);
+        let reach = |pairs: &[MaterialPair]| {
+            pairs.iter().map(|pair| Hertz::new(pair, 8.0 * largest, 1.0).reach).fold(0.0, f64::max)
+        };
         let on_tool = |rigid_body: &RigidBody| {
             let with = |m: &ContactMaterial| {
-                MaterialPair::new([m.elastic, rigid_body.elastic], m.surface.against(rigid_body.surface))
+                let pair = MaterialPair::new([m.elastic, rigid_body.elastic], m.surface.against(rigid_body.surface));
+                pair.sticking(adhesion(m.work_of_adhesion, rigid_body.work_of_adhesion))
             };
-            (SurfaceContacts::new(skin), materials.iter().map(with).collect())
+            let pairs: Vec<MaterialPair> = materials.iter().map(with).collect();
+            (SurfaceContacts::new(skin).with_reach(reach(&pairs)), pairs)
         };
         let is_bonded: Vec<bool> = bonded.bodies().iter().map(|body| !body.bonds.is_empty()).collect();
         let rayleigh = (0..body.len()).map(|i| {
@@ -169,10 +184,12 @@ impl Contacts {
             is_bonded.iter().any(|b| !b) || !rigid_bodies.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
         let rayleigh_frequency = if meets { rayleigh.fold(0.0, f64::max) } else { 0.0 };
         let alone = is_bonded.len() == 1 && is_bonded[0];
+        let pairs: Vec<MaterialPair> =
+            materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect();
         Contacts {
-            pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
             on_tools: rigid_bodies.iter().map(on_tool).collect(),
-            among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
+            among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin).with_reach(reach(&pairs))),
+            pairs,
             solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
             nodes: NodeContacts::none(rigid_bodies.len()),
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
@@ -341,7 +358,7 @@ impl Contacts {
         }
         let deepest = |contacts: &SurfaceContacts<Hertz>, other: OverlapWith| -> Vec<Overlap> {
             // What was taken up as it stands bears nothing.
-            let loaded = |t: &&Touch<HertzMemory>| t.is_contact() && t.force != Vec3::zeros();
+            let loaded = |t: &&Touch<HertzMemory>| t.is_contact() && t.overlap > 0.0 && t.force != Vec3::zeros();
             let of = |t: &Touch<HertzMemory>| Overlap { particle: t.sphere, other: other.clone(), depth: t.overlap };
             contacts.touches().filter(loaded).map(of).collect()
         };

@@ -63,6 +63,8 @@ pub struct RigidBody {
     pub elastic: ElasticMaterial,
     /// Friction and damping.
     pub surface: ContactParameters,
+    /// Work of adhesion between two such bodies [J/m²].
+    pub work_of_adhesion: f64,
     /// Where it is, with its velocities at the half step before tⁿ.
     pub frame: Frame,
     /// Motion along x, y, z.
@@ -109,6 +111,7 @@ impl RigidBody {
             form,
             elastic,
             surface,
+            work_of_adhesion: 0.0,
             start: frame.origin,
             frame,
             along: [Drive::Fixed, Drive::Fixed, Drive::Fixed],

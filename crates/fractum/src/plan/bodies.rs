@@ -54,6 +54,11 @@ impl Plan {
                             case.materials[loose.material].name.value,
                             quantity(mass.iter().sum(), "kg")
                         );
+                        let energy = case.materials[loose.material].work_of_adhesion;
+                        let text = match energy > 0.0 {
+                            true => format!("{text}, work of adhesion {}", quantity(energy, "J/m^2")),
+                            false => text,
+                        };
                         let graded = matches!(loose.source, LooseSource::Graded { .. });
                         self.add("body", if graded { text + &passing(radius) } else { text });
                     }
