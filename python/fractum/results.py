@@ -20,7 +20,7 @@ from .vtk import Frame
 
 class Parts(dict[str, Frame]):
     """The parts of a scene at one time, by name: `"solid"`, `"discrete elements"`, `"bonded particles"`, `"loose particles"`,
-    `"rigid bodies"`, `"bonds"`, `"cracks"`, `"gas"`. `time` [s]."""
+    `"rigid bodies"`, `"bonds"`, `"cracks"`, `"gas"`, `"interfaces"`, `"contacts"`. `time` [s]."""
 
     def __init__(self, time: float, files: dict[str, Path]) -> None:
         super().__init__({name: Frame(path) for name, path in files.items()})

@@ -311,6 +311,11 @@ impl<L: ContactLaw> SphereContacts<L> {
             .map(|(p, _)| (*p.0, p.1))
     }
 
+    /// Pairs that touched at the last step, with what they remember.
+    pub fn memories_touching(&self) -> impl Iterator<Item = ([u32; 2], &L::Memory)> {
+        (0..self.pairs.len()).filter(|&k| self.touching[k]).map(|k| (self.pairs[k], &self.memories[k]))
+    }
+
     /// Pairs that touched at the last step.
     pub fn touching(&self) -> impl Iterator<Item = [u32; 2]> {
         self.pairs.iter().zip(&self.touching).filter(|(_, touching)| **touching).map(|(pair, _)| *pair)

@@ -65,7 +65,8 @@ pub struct Touch<M> {
     pub offset: Vec3,
     /// Overlap [m].
     pub overlap: f64,
-    pub(crate) normal: Vec3,
+    /// Unit vector into the ground.
+    pub normal: Vec3,
     pub(crate) weight: f64,
     pub(crate) elastic: bool,
     pub(crate) memory: M,

@@ -43,6 +43,7 @@ output_fields! {
     Reaction, "reaction", "Write the forces of supports on nodes";
     Fragment, "fragment", "Write the number of the fragment that each node belongs to, as in fragments.csv; 0 for single nodes";
     Xyz, "xyz", "Write the particles of bonded and loose bodies as extended xyz too, at their present positions, for OVITO: particles/particles-00000.xyz";
+    Contacts, "contacts", "Write the contacts of bonded and loose particles with each other, rigid bodies and solids as lines, with their forces: contacts/contacts-00000.vtp";
 }
 
 /// The fields that a case asks for.

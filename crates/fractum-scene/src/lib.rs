@@ -46,7 +46,7 @@ pub use clock::{Clock, Phase, TimeStepSettings};
 pub use conditions::*;
 pub use contacts::{
     ContactBody, ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap,
-    OverlapWith, RigidBody, Servo, ServoArea, SolidSurface, pieces,
+    OverlapWith, ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
 };
 pub use domain::{Domain, Left};
 pub use error::{SceneError, StepError};

@@ -7,7 +7,7 @@ use std::path::Path;
 use fractum_output::frames::read_arrays;
 use fractum_vtk::Arrays;
 
-use crate::common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, run, summary};
+use crate::common::{BONDED_BAR, BREAKING_BAR, Workplace, files_below, resumed, run, summary};
 
 /// Where points were at the start, and how far they have moved.
 const PLACES: [&str; 2] = ["Points", "displacement"];
@@ -133,6 +133,140 @@ fn further_fields_are_written_where_they_are_asked_for() {
     assert!(reaction.iter().any(|force| force[0] != 0.0) && reaction.iter().all(|force| force[1] == 0.0));
     assert!(solid.get("material").iter().all(|&material| material == 0.0));
     assert!(solid.get("fragment").contains(&1.0));
+}
+
+const COLUMN: &str = r#"fractum = 1
+title = "Beads in a column, by twos and ones"
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "1 GPa"
+poisson_ratio = 0.22
+contact = { friction = 0, restitution = 0.2 }
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "glass"
+file = "beads.csv"
+[[bodies]]
+name = "box"
+kind = "rigid"
+shape = "box"
+inside = true
+point = ["-20 mm", "-10 mm", "0 mm"]
+size = ["40 mm", "20 mm", "200 mm"]
+contact = { friction = 0, restitution = 0.2 }
+[[loads]]
+gravity = { z = "-9.81 m/s^2" }
+[solver]
+end = "0.2 s"
+[output]
+fields = { every = "10 ms", contacts = true }
+"#;
+
+#[test]
+fn contacts_of_a_column_of_beads_bear_what_lies_above() {
+    // Rows of two and of one, 9 beads in 6 rows: the contacts of a bead with the row below lean by 30 degrees, and the walls take what they push outwards.
+    let place = Workplace::new(COLUMN);
+    let (radius, mut rows, mut beads) = (0.01, [2, 1, 2, 1, 2, 1].into_iter().zip(0..), String::new());
+    rows.by_ref().for_each(|(count, row)| {
+        let z = radius * (1.0 + f64::from(row) * 3f64.sqrt());
+        let across: &[f64] = if count == 2 { &[-radius, radius] } else { &[0.0] };
+        across.iter().for_each(|x| beads += &format!("{x},0,{z},{radius}\n"));
+    });
+    fs::write(place.path("beads.csv"), beads).unwrap();
+    let one = run(&place, "out", "1");
+    let names = [
+        "Points",
+        "displacement",
+        "normal_force",
+        "tangential_force",
+        "force",
+        "overlap",
+        "first_particle",
+        "second_particle",
+        "first_body",
+        "second_body",
+        "second_kind",
+    ];
+    let file = last(&place, "contacts", "contacts", &names);
+    let weight = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3) * 9.81;
+    let (normal, force) = (file.get("normal_force"), vectors(&file, "force"));
+    let (points, displacement) = (vectors(&file, "Points"), vectors(&file, "displacement"));
+    // Beads above each row, from the lowest row on.
+    let above = [7.0, 6.0, 4.0, 3.0, 1.0];
+    let row = |particle: f64| (particle / 3.0) as usize * 2 + usize::from(particle % 3.0 == 2.0);
+    let (mut carried, mut inclined) = (0.0, 0);
+    for (line, &second) in file.get("second_particle").iter().enumerate() {
+        let ends = [2 * line, 2 * line + 1].map(|p| [0, 2].map(|axis| points[p][axis] + displacement[p][axis]));
+        let apart = [0, 1].map(|axis| ends[1][axis] - ends[0][axis]);
+        let length = apart[0].hypot(apart[1]);
+        assert!(file.get("tangential_force")[line] < 1e-9 * weight && file.get("first_body")[line] == 0.0);
+        let first = file.get("first_particle")[line];
+        if second >= 0.0 {
+            assert_eq!((file.get("second_kind")[line], row(second)), (0.0, row(first) + 1));
+            let right = above[row(first)] * weight / (2.0 * 30f64.to_radians().cos());
+            assert!((normal[line] / right - 1.0).abs() < 0.01, "row {}: {} for {right}", row(first), normal[line]);
+            assert!((length / (2.0 * radius - file.get("overlap")[line]) - 1.0).abs() < 1e-6);
+            inclined += 1;
+        } else {
+            assert_eq!((file.get("second_kind")[line], file.get("second_body")[line]), (1.0, 0.0));
+            assert!((length / (radius - file.get("overlap")[line]) - 1.0).abs() < 1e-4, "{length}");
+            carried += force[line][2];
+        }
+    }
+    assert_eq!(inclined, 10);
+    assert!((carried / (9.0 * weight) - 1.0).abs() < 0.01, "{carried} N of {}", 9.0 * weight);
+    fs::write(place.path("case.toml"), COLUMN.replace(", contacts = true", "")).unwrap();
+    let without = run(&place, "without", "1");
+    assert_eq!(without["state_hash"], one["state_hash"]);
+    assert!(!place.path("without/contacts").exists());
+}
+
+#[test]
+fn files_of_contacts_have_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let case = COLUMN.replace("end = \"0.2 s\"", "end = \"10 ms\"").replace("every = \"10 ms\"", "every = \"0.2 ms\"");
+    let place = Workplace::new(&(case + "checkpoint = { every = \"1 ms\" }\n"));
+    fs::write(place.path("beads.csv"), "-0.01,0,0.01,0.01\n0.01,0,0.01,0.01\n0,0,0.0275,0.01\n").unwrap();
+    let of = |folder: &str| {
+        let files = files_below(&place.path(folder).join("contacts"), ".vtp");
+        files.iter().map(|file| fs::read(file).unwrap()).collect::<Vec<_>>()
+    };
+    let one = run(&place, "one", "1");
+    run(&place, "two", "2");
+    assert!(of("one").len() > 20 && of("one") == of("two"));
+    assert_eq!(resumed(&place, "two")["state_hash"], one["state_hash"]);
+    assert!(of("one") == of("two"), "after a checkpoint");
+}
+
+#[test]
+fn contacts_with_the_floor_carry_beads_and_bonded_bodies() {
+    // A bonded plate of 9 particles on a floor, and a bead on its middle.
+    let case = COLUMN.replace("restitution = 0.2 }\n[[loads]]", "restitution = 0.2 }\nPLATE[[loads]]");
+    let plate = "[[bodies]]\nname = \"plate\"\nkind = \"bonded\"\nmaterial = \"glass\"\nfile = \"plate.csv\"\nbond_gap = \"1 mm\"\n";
+    let beams = "\n[materials.glass.bonds]\ncoordination = 3\nconvention = \"all\"\nradius_ratio = 0.5\nyoung_modulus = \"1 GPa\"\n";
+    let place = Workplace::new(
+        &case.replace("PLATE", &(beams.to_owned() + plate)).replace("end = \"0.2 s\"", "end = \"0.3 s\""),
+    );
+    let cells = [-1, 0, 1]
+        .map(|x| [-1, 0, 1].map(|y| format!("{},{},0.003,0.003\n", 0.006 * f64::from(x), 0.006 * f64::from(y))));
+    fs::write(place.path("plate.csv"), cells.concat().concat()).unwrap();
+    fs::write(place.path("beads.csv"), "0,0,0.016,0.01\n").unwrap();
+    run(&place, "out", "1");
+    let file = last(&place, "contacts", "contacts", &["force", "second_kind", "first_body", "second_body"]);
+    let particles = [("bonded", 9), ("loose", 1)].map(|(stem, count)| {
+        let mass = last(&place, "particles", stem, &["mass"]).get("mass").to_vec();
+        assert_eq!(mass.len(), count);
+        mass.iter().sum::<f64>() * 9.81
+    });
+    let force = vectors(&file, "force");
+    let carried = |kind: f64| {
+        let lines = (0..force.len()).filter(|&line| file.get("second_kind")[line] == kind);
+        lines.map(|line| force[line][2]).sum::<f64>()
+    };
+    let weight = particles[0] + particles[1];
+    assert!((carried(1.0) / weight - 1.0).abs() < 0.01, "{} N of {weight} on the floor", carried(1.0));
+    // The bead is the first body: the force on it.
+    assert!((carried(0.0) / particles[1] - 1.0).abs() < 0.01, "{} N of {}", carried(0.0), particles[1]);
 }
 
 #[test]

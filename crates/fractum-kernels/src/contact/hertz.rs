@@ -184,6 +184,16 @@ impl Hertz {
 }
 
 impl Hertz {
+    /// Force of a round contact at the last step on j [N].
+    ///
+    /// - `normal`: unit normal from i to j; `overlap` [m]: where the pull acts across a gap
+    pub fn last_force(&self, memory: &HertzMemory, normal: &Vec3, overlap: f64) -> Vec3 {
+        let HertzMemory { slip, drag, root, damper, .. } = memory;
+        let elastic = self.normal * root * root * root;
+        let overlap = if *root > 0.0 { 0.0 } else { overlap.clamp(-self.reach, 0.0) };
+        normal * (elastic + damper - self.adhesion(overlap).0) - slip * (self.tangential * root) - drag
+    }
+
     /// Pull [N] and energy [J] of adhesion at an overlap δ > -h.
     #[inline]
     fn adhesion(&self, overlap: f64) -> (f64, f64) {

@@ -158,6 +158,10 @@ pub(crate) fn adhesion(draw: &mut Draw) -> Held {
         let force = law.force(&motion, &mut memory);
         let along = force.on_second.dot(&normal);
         let held = still(&free, overlap(step)).0;
+        let told = law.last_force(&memory, &normal, overlap(step));
+        hold((told - force.on_second).norm() <= 1e-9 * (pull + force.on_second.norm()), || {
+            format!("tells {told} for {} at step {step}", force.on_second)
+        })?;
         let pulled = if overlap(step) >= 0.0 { pull } else { 0.0 };
         let tangential = (force.on_second - normal * along).norm();
         hold(tangential <= surface.friction * (along + pulled).max(0.0) * (1.0 + 1e-9) + 1e-9 * pull, || {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::OutputError;
 use crate::fields::{OutputField, OutputFields};
+use crate::frames::contacts;
 use crate::frames::cracks;
 use crate::frames::frame_file::FrameFile;
 use crate::frames::gas_cells;
@@ -84,6 +85,9 @@ impl Frame {
         }
         if !scene.interfaces().is_empty() {
             whole.push((Population::Interfaces, interfaces::file(scene)?));
+        }
+        if grid.further.has(OutputField::Contacts) {
+            whole.extend(contacts::file(scene)?.map(|file| (Population::Contacts, file)));
         }
         let crack = CrackSurface::of(&scene.solid);
         if !crack.facets.is_empty() {
@@ -285,7 +289,7 @@ fn of_nodes(field: OutputField, scene: &Scene, order: &[u32]) -> Vec<Array> {
             let fragments = scene.fragment_of_nodes();
             vec![Array::integers("fragment", nodes().map(|node| fragments[node]))]
         }
-        OutputField::Xyz => Vec::new(),
+        OutputField::Xyz | OutputField::Contacts => Vec::new(),
     }
 }
 
@@ -308,7 +312,7 @@ fn of_elements(field: OutputField, solid: &Solid, stresses: &[Sym3]) -> Vec<Arra
             vec![Array::new("strain", strains.map(|strain| strain.0))]
         }
         OutputField::Reaction | OutputField::Fragment => Vec::new(),
-        OutputField::Xyz => Vec::new(),
+        OutputField::Xyz | OutputField::Contacts => Vec::new(),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Frames: what ParaView shows of one instant, a file per population, written beside the run and read again for pictures and movies.
 
+mod contacts;
 pub mod cracks;
 mod frame;
 mod frame_file;

@@ -23,11 +23,13 @@ pub enum Population {
     Rigid,
     /// Interfaces between elements.
     Interfaces,
+    /// Contacts of particles.
+    Contacts,
 }
 
 impl Population {
     /// All of them.
-    pub const ALL: [Population; 9] = [
+    pub const ALL: [Population; 10] = [
         Population::Solid,
         Population::Debris,
         Population::Bonded,
@@ -37,6 +39,7 @@ impl Population {
         Population::Gas,
         Population::Rigid,
         Population::Interfaces,
+        Population::Contacts,
     ];
 
     /// Its number in the collection.
@@ -81,12 +84,14 @@ impl Population {
             Population::Gas => (5, "gas", ["gas", "gas", "vtu"]),
             Population::Rigid => (7, "rigid bodies", ["rigid", "rigid", "vtp"]),
             Population::Interfaces => (8, "interfaces", ["interfaces", "interfaces", "vtp"]),
+            Population::Contacts => (9, "contacts", ["contacts", "contacts", "vtp"]),
         }
     }
 
     /// Whether pictures show it.
     pub fn is_drawn(self) -> bool {
-        !matches!(self, Population::Bonds | Population::Cracks | Population::Gas | Population::Interfaces)
+        use Population::{Bonds, Contacts, Cracks, Gas, Interfaces};
+        !matches!(self, Bonds | Contacts | Cracks | Gas | Interfaces)
     }
 
     /// Whether it is what the case is about: pictures frame it, and magnify how far it has moved.

@@ -1,5 +1,7 @@
 //! Force of contact between two named bodies, summed up for the probes that ask for it.
 
+use fractum_contact::Touch;
+use fractum_contact::law::{ContactLaw, Hertz, HertzMemory};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
@@ -32,6 +34,32 @@ pub struct ContactProbe {
     pub along: Along,
 }
 
+/// A contact of a particle with another one, a rigid body or a solid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ParticleContact {
+    /// The particle.
+    pub particle: u32,
+    /// The other particle; none on a rigid body or solid.
+    pub other: Option<u32>,
+    /// Their bodies.
+    pub bodies: [ContactBody; 2],
+    /// Place of the contact [m]; between two particles the middle of their centres.
+    pub place: Vec3,
+    /// Unit vector from the particle into what it touches.
+    pub normal: Vec3,
+    /// Force on the particle [N].
+    pub force: Vec3,
+    /// Overlap [m]; negative across a gap.
+    pub overlap: f64,
+}
+
+impl ParticleContact {
+    /// Force along the normal [N]: positive where it presses, negative where it pulls.
+    pub fn normal_force(&self) -> f64 {
+        -self.force.dot(&self.normal)
+    }
+}
+
 /// Everything that touches.
 pub(crate) struct Touching<'a> {
     pub(crate) solid: &'a Solid,
@@ -48,6 +76,55 @@ impl Contacts {
         }
         self.among.iter_mut().for_each(|among| among.keep_loads());
         self.nodes.debris.iter_mut().for_each(DebrisAmong::keep_loads);
+    }
+
+    /// Visits every contact of the last step of particles with each other, with rigid bodies and with solids. Several contacts of one particle with one
+    /// surface may share their force: on a concave edge some of it is taken off again.
+    pub fn of_particles(&self, particles: &Particles, mut visit: impl FnMut(ParticleContact)) {
+        let body = |i: u32| ContactBody::Particles(self.body[i as usize] as usize);
+        for ([i, j], memory) in self.among.iter().flat_map(|among| among.memories_touching()) {
+            let Some(law) = self.law_among(&particles.radius, &particles.mass, i, j) else { continue };
+            let [from, to] = [i, j].map(|k| particles.position[k as usize]);
+            let (apart, place) = (to - from, (from + to) * 0.5);
+            let distance = apart.norm();
+            let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
+            let overlap = particles.radius[i as usize] + particles.radius[j as usize] - distance;
+            let force = -law.last_force(memory, &normal, overlap - Hertz::overlap_offset(memory));
+            visit(ParticleContact {
+                particle: i,
+                other: Some(j),
+                bodies: [body(i), body(j)],
+                place,
+                normal,
+                force,
+                overlap,
+            });
+        }
+        self.on_grounds(particles, visit);
+    }
+
+    /// Visits every contact of the last step of particles with rigid bodies and with solids.
+    fn on_grounds(&self, particles: &Particles, mut visit: impl FnMut(ParticleContact)) {
+        let mut touched = |touch: &Touch<HertzMemory>, place: Vec3, second: ContactBody| {
+            let Touch { sphere: particle, normal, force, overlap, .. } = *touch;
+            let bodies = [ContactBody::Particles(self.body[particle as usize] as usize), second];
+            visit(ParticleContact { particle, other: None, bodies, place, normal, force, overlap });
+        };
+        for (index, (contacts, _)) in self.on_tools.iter().enumerate() {
+            for touch in contacts.touches() {
+                touched(
+                    touch,
+                    self.flat.place(particles, touch.sphere as usize) + touch.offset,
+                    ContactBody::Rigid(index),
+                );
+            }
+        }
+        for ground in &self.solids {
+            for touch in ground.contacts().touches() {
+                let place = particles.position[touch.sphere as usize] + touch.offset;
+                touched(touch, place, ContactBody::Solid(ground.body()));
+            }
+        }
     }
 
     /// The force at the last instant that was measured [N]; none of bodies that are not watched.
@@ -83,12 +160,7 @@ impl Contacts {
         for ([i, j], force) in self.among.iter().flat_map(|among| among.loads()) {
             visit((place(i) + place(j)) * 0.5, [particle(i), particle(j)], -force);
         }
-        for (index, (contacts, _)) in self.on_tools.iter().enumerate() {
-            for touch in contacts.touches() {
-                let at = self.flat.places(&particles.position)[touch.sphere as usize] + touch.offset;
-                visit(at, [particle(touch.sphere), ContactBody::Rigid(index)], touch.force);
-            }
-        }
+        self.on_grounds(particles, |contact| visit(contact.place, contact.bodies, contact.force));
         for (index, nodes) in self.nodes.on_tools.iter().enumerate() {
             for (touch, at, own) in nodes.iter().flat_map(|nodes| nodes.touches()) {
                 visit(at, [node(own), ContactBody::Rigid(index)], touch.force);
@@ -96,9 +168,6 @@ impl Contacts {
         }
         for ground in &self.solids {
             let own = ContactBody::Solid(ground.body());
-            for touch in ground.contacts().touches() {
-                visit(place(touch.sphere) + touch.offset, [particle(touch.sphere), own], touch.force);
-            }
             for (touch, at, other) in ground.visitors().into_iter().flat_map(|nodes| nodes.touches()) {
                 visit(at, [node(other), own], touch.force);
             }

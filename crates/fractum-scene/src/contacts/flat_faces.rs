@@ -107,9 +107,10 @@ impl FlatBodies {
         }
     }
 
-    /// Where rigid bodies felt particles at the last step [m].
-    pub(super) fn places<'a>(&'a self, position: &'a [Vec3]) -> &'a [Vec3] {
-        if self.shift.is_empty() { position } else { &self.place }
+    /// Where rigid bodies feel a particle as it stands [m].
+    pub(super) fn place(&self, particles: &Particles, i: usize) -> Vec3 {
+        let shift = self.shift.get(i).copied().filter(|shift| *shift != Vec3::zeros());
+        shift.map_or(particles.position[i], |shift| particles.position[i] + particles.orientation[i] * shift)
     }
 
     /// Adds the moments about the centres of forces that act where rigid bodies feel particles.

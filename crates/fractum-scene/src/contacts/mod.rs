@@ -23,7 +23,7 @@ use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
-pub use between::{ContactBody, ContactProbe};
+pub use between::{ContactBody, ContactProbe, ParticleContact};
 use flat_faces::FlatBodies;
 pub use flat_faces::FlatFaces;
 pub(crate) use held_nodes::{HoldStep, hold_nodes};
