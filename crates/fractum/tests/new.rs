@@ -203,3 +203,22 @@ fn examples_pass_check_without_a_doubt() {
         assert_eq!((checked.code, checked.stderr.as_str()), (Some(0), ""), "{}", case.display());
     }
 }
+
+/// Damage beside interfaces whose modes mix, at rest: a press that moves slowly has 1.14 to 1.15 kN (`docs/jobs.md`).
+#[test]
+fn the_beam_with_aggregate_comes_past_its_peak_at_rest() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/beam-with-aggregate");
+    let read = |name: &str| fs::read(folder.join(name)).unwrap();
+    let case = String::from_utf8(read("case.toml"))
+        .unwrap()
+        .replace("below = 0.3", "below = 0.95")
+        .replace("mesh.msh", "bar.msh");
+    let place = Workplace::with_mesh(&case, &read("mesh.msh"));
+    let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let summary = summary(&place, "out");
+    let peak = summary["probes"]["load"]["max"].as_f64().unwrap();
+    assert!((peak / 1150.0 - 1.0).abs() < 0.01, "{peak}");
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3);
+    assert_eq!(summary["warnings"].as_array().map(Vec::len), Some(0), "{}", summary["warnings"]);
+}

@@ -6,7 +6,9 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
+use fractum_scene::{
+    CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, InterfaceLaw, Interfaces, Scene, SpringInterface,
+};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
@@ -104,7 +106,9 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
     let kinds = (0u32..).zip(&case.interfaces).map(|(kind, interface)| InterfaceKind {
         name: interface.name.clone(),
         law: interface.law,
-        stiffness: interface.stiffness.or_else(|| comes_to_rest(case).then(|| firm(&scene.solid, &faces, kind))),
+        stiffness: interface
+            .stiffness
+            .or_else(|| comes_to_rest(case).then(|| firm(&scene.solid, &faces, kind, &interface.law))),
     });
     let kinds: Vec<InterfaceKind> = kinds.collect();
     for (kind, interface) in kinds.iter().zip(&case.interfaces).filter(|(_, given)| given.stiffness.is_none()) {
@@ -128,8 +132,8 @@ fn comes_to_rest(case: &Case) -> bool {
 }
 
 /// Stiffness of an interface at rest that is to be stiff until its strength is met [Pa/m]: with [`FIRM`] times that of an element of the stiffer side over
-/// the size of its smallest face.
-fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32) -> [f64; 2] {
+/// the size of its smallest face, and those across and along it in the ratio f_t²/c²: so opening and sliding mix as they do in motion, without a stiffness.
+fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, law: &InterfaceLaw) -> [f64; 2] {
     let of = |face: &InterfaceFace| {
         let [a, b, c] = face.sides[0].map(|node| solid.reference[node as usize]);
         let size = if face.corners() == 2 { (b - a).norm() } else { (b - a).cross(&(c - a)).norm().sqrt() };
@@ -137,7 +141,9 @@ fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32) -> [f64; 2] {
         modulus(face.elements[0]).max(modulus(face.elements[1])) / size
     };
     let stiffest = faces.iter().filter(|face| face.kind == kind).map(of).fold(0.0, f64::max);
-    [FIRM * stiffest; 2]
+    let [opens, slides] = [law.tensile_strength, law.cohesion].map(|strength| strength * strength);
+    let least = opens.min(slides);
+    if least > 0.0 { [opens, slides].map(|strength| FIRM * stiffest * strength / least) } else { [FIRM * stiffest; 2] }
 }
 
 /// What does not go together with interfaces yet.

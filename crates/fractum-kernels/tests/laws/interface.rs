@@ -1,10 +1,10 @@
 //! Properties of interfaces between elements.
 
-use fractum_kernels::Vec3;
 use fractum_kernels::interface::{
     FreeJump, InterfaceForce, InterfaceLaw, InterfaceSoftening, InterfaceState, MixedMode, Roughness, SpringInterface,
     stiff_traction,
 };
+use fractum_kernels::{Mat3, Vec3};
 
 use super::draw::{Draw, Held, hold};
 
@@ -135,7 +135,8 @@ pub(crate) fn spring_proportional(draw: &mut Draw) -> Held {
     hold((spent / energy - 1.0).abs() < 1e-6, || format!("spends {spent} of {energy} J/m², share {share}"))
 }
 
-/// The tangent along a straight way: elastic before the onset, the slope of the softening beyond it, and the way back to zero.
+/// Both tangents along a straight way: elastic before the onset, the slope of the softening beyond it, and the way back to zero. The symmetric one takes the stress on
+/// the ellipse as far down as the whole one, and has no other direction in which it falls.
 pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
     let law = InterfaceLaw { dilation: 0.0, ..law(draw) };
     let interface = with_stiffness(draw, law);
@@ -148,14 +149,17 @@ pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
     let ductility = law.energy(sliding / elastic) / (0.5 * elastic * onset * onset);
     let share = draw.between(0.05, 0.95);
     let state = law.intact(false);
-    let slope = |way: f64, state: &InterfaceState| {
+    let at = |way: f64, state: &InterfaceState| {
         let (jump, mut after) = (along * way, *state);
         let force = interface.load(jump, &mut after);
         let secant = interface.secant(&jump, &force, &after);
-        (along.dot(&(interface.tangent(&jump, state, secant) * along)), after)
+        (interface.tangent(&jump, state, secant), interface.jacobian(&jump, state), secant, after)
     };
-    let (before, _) = slope(share * onset, &state);
-    hold((before / elastic - 1.0).abs() < 1e-5, || format!("{before} for {elastic} Pa/m before the onset"))?;
+    let slope = |matrix: &Mat3| along.dot(&(matrix * along));
+    let (symmetric, whole, ..) = at(share * onset, &state);
+    for before in [symmetric, whole].map(|matrix| slope(&matrix)) {
+        hold((before / elastic - 1.0).abs() < 1e-5, || format!("{before} for {elastic} Pa/m before the onset"))?;
+    }
     let (way, expected) = match law.softening {
         InterfaceSoftening::Linear => (1.0 + share * (ductility - 1.0), -1.0 / (ductility - 1.0)),
         InterfaceSoftening::Exponential => {
@@ -163,13 +167,46 @@ pub(crate) fn spring_tangent(draw: &mut Draw) -> Held {
             (1.0 + share * scale, -(-share).exp() / scale)
         }
     };
-    let (found, after) = slope(way * onset, &state);
-    hold((found / elastic - expected).abs() < 1e-4 * expected.abs(), || {
+    let (symmetric, whole, secant, after) = at(way * onset, &state);
+    let found = slope(&whole);
+    hold((found / elastic - expected).abs() < 1e-3 * expected.abs(), || {
         format!("{found} for {} Pa/m, {law:?}", expected * elastic)
     })?;
-    let (back, _) = slope(0.5 * way * onset, &after);
+    let [first, second] = [normal / law.tensile_strength, across / law.cohesion].map(|k| k * k);
+    let away = Vec3::new(first * along.x, second * along.y, second * along.z);
+    let pull = away.component_div(&Vec3::new(secant[0], secant[1], secant[1]));
+    let down = pull.dot(&(symmetric * along)) / away.dot(&along) * after.secant;
+    hold((down - expected).abs() < 1e-4 * expected.abs(), || format!("{down} for {expected}, {law:?}"))?;
+    let falls = symmetric.symmetric_eigenvalues().iter().filter(|value| **value < 0.0).count();
+    hold(falls == 1 && symmetric == symmetric.transpose(), || format!("{symmetric} in {falls} directions"))?;
+    let (symmetric, whole, ..) = at(0.5 * way * onset, &after);
     let secant = after.secant * elastic;
-    hold((back / secant - 1.0).abs() < 1e-5, || format!("{back} for {secant} Pa/m on the way back"))
+    for back in [symmetric, whole].map(|matrix| slope(&matrix)) {
+        hold((back / secant - 1.0).abs() < 1e-5, || format!("{back} for {secant} Pa/m on the way back"))?;
+    }
+    Ok(())
+}
+
+/// Strengths and stiffnesses in the same ratio: opened and slid along any straight way it bears what one without a stiffness does, t = χ (f_t² δ_n, c² δ_s)/λ.
+pub(crate) fn spring_as_stiff(draw: &mut Draw) -> Held {
+    let law = InterfaceLaw { dilation: 0.0, ..law(draw) };
+    let squares = [law.tensile_strength, law.cohesion].map(|strength| strength * strength);
+    let stiff = draw.over_decades(1e3, 1e5) / law.opening_energy.min(law.sliding_energy);
+    let interface = SpringInterface { law, stiffness: squares.map(|square| square * stiff) };
+    let along = direction(draw, law.last());
+    let weighted = Vec3::new(squares[0] * along.x, squares[1] * along.y, squares[1] * along.z);
+    let spent = weighted.dot(&along).sqrt();
+    let sliding = squares[1] * flat(&along).powi(2) / (spent * spent);
+    let energy = law.energy(sliding);
+    let way = draw.between(0.05, 0.95) * 2.0 * energy / spent;
+    let left = match law.softening {
+        InterfaceSoftening::Linear => 1.0 - 0.5 * spent * way / energy,
+        InterfaceSoftening::Exponential => (-spent * way / energy).exp(),
+    };
+    let expected = weighted * (left / spent);
+    let found = interface.load(along * way, &mut law.intact(false)).traction();
+    let over = |v: Vec3| (v.x / law.tensile_strength).hypot(flat(&v) / law.cohesion);
+    hold(over(found - expected) < 1e-3, || format!("{found} for {expected}, {law:?}"))
 }
 
 /// Led down its curve in one mode, from any state on it, also by a longer or shorter jump than that: it stands where it was led to and softens from there, and its traction is that of the law.

@@ -125,6 +125,7 @@ const LAWS: &[Row] = &[
     Row { law: "interface with a stiffness, one mode to the end", holds: interface::spring_proportional },
     Row { law: "interface with a stiffness, tangent", holds: interface::spring_tangent },
     Row { law: "interface with a stiffness, led down its curve", holds: interface::spring_led },
+    Row { law: "interface with a stiffness, as one without", holds: interface::spring_as_stiff },
     Row { law: "interface with a stiffness, any way", holds: interface::spring_any_way },
     Row { law: "interface with a stiffness, sliding under pressure", holds: interface::spring_sliding },
     Row { law: "stiff interface, one mode to the end", holds: interface::stiff_proportional },

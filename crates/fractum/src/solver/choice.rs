@@ -17,7 +17,10 @@ const MOST_NODES: usize = 300_000;
 /// Which solver suits a case that names one, why, what its damping does, and which end suits it, line by line; nothing where the case leaves it open,
 /// since [`choose`] has said it.
 pub(crate) fn compare(case: &Case, built: &mut BuiltScene) -> Vec<(&'static str, String)> {
-    if built.scene.solid.body_count() == 0
+    // What may be at rest only where the case asks for it needs no choice once it has.
+    let asks = case.solver.kind == SolverKind::Static && (case.flows.heat.is_some() || !case.interfaces.is_empty());
+    if asks
+        || built.scene.solid.body_count() == 0
         || matches!(case.solver.kind, SolverKind::Auto | SolverKind::Heat | SolverKind::Modes)
     {
         return Vec::new();
