@@ -304,6 +304,10 @@ impl StaticSolver {
         let intact = points.iter().all(|point| point.damage < INTACT) && scene.interfaces().is_whole();
         let mut monotone = false;
         let mut by_path = self.follows || self.settings.control == Control::Path;
+        // Steps of the load meet the onset of the first face: it may be the peak.
+        let mut meets_onset =
+            intact && !by_path && self.settings.control == Control::TimeThenPath && self.opens(scene).is_none();
+        by_path |= meets_onset;
         let mut by_damage = by_path;
         let edges_at_onset = intact && by_path && path::is_at_onset(&scene.solid, &points, NEAR_ONSET);
         let mut held = true;
@@ -343,6 +347,10 @@ impl StaticSolver {
                 return accept_equilibrium(scene, &self.response.start, time, &mut self.applied);
             }
             self.lead.at = leads;
+            if meets_onset {
+                (meets_onset, by_path, by_damage) = (false, false, false);
+                continue;
+            }
             if at_onset && held {
                 held = false;
                 if opens.is_none() {
