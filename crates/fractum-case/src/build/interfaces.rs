@@ -20,6 +20,8 @@ use crate::{Diagnostic, Diagnostics, Place, nearest};
 const IN_ZONE: f64 = 3.0;
 /// How much stiffer than an element an interface is at rest that is to be stiff: it gives way by a hundredth of one.
 const FIRM: f64 = 100.0;
+/// Most that the stiffness across or along such an interface is of the other: beyond it corners of faces that are pressed together slide by turns.
+const FIRMEST: f64 = 16.0;
 
 /// Cuts a mesh along the interfaces of a case.
 ///
@@ -132,7 +134,7 @@ fn comes_to_rest(case: &Case) -> bool {
 }
 
 /// Stiffness of an interface at rest that is to be stiff until its strength is met [Pa/m]: with [`FIRM`] times that of an element of the stiffer side over
-/// the size of its smallest face, and those across and along it in the ratio f_t²/c²: so opening and sliding mix as they do in motion, without a stiffness.
+/// the size of its smallest face, and those across and along it in the ratio f_t²/c² (at most [`FIRMEST`], either way): so opening and sliding mix as they do in motion, without a stiffness.
 fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, law: &InterfaceLaw) -> [f64; 2] {
     let of = |face: &InterfaceFace| {
         let [a, b, c] = face.sides[0].map(|node| solid.reference[node as usize]);
@@ -143,7 +145,8 @@ fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, law: &InterfaceLaw) -
     let stiffest = faces.iter().filter(|face| face.kind == kind).map(of).fold(0.0, f64::max);
     let [opens, slides] = [law.tensile_strength, law.cohesion].map(|strength| strength * strength);
     let least = opens.min(slides);
-    if least > 0.0 { [opens, slides].map(|strength| FIRM * stiffest * strength / least) } else { [FIRM * stiffest; 2] }
+    let ratio = |strength: f64| if least > 0.0 { (strength / least).min(FIRMEST) } else { 1.0 };
+    [opens, slides].map(|strength| FIRM * stiffest * ratio(strength))
 }
 
 /// What does not go together with interfaces yet.

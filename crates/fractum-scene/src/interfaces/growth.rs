@@ -7,6 +7,9 @@ use super::joints::PointPlace;
 use super::reading::is_broken;
 use super::{Interfaces, Point};
 
+/// Step of a difference over the jump.
+const DIFFERENCE: f64 = 1e-6;
+
 /// How far a point may go: the [ratio](Standing::ratio) at which it softens further and a part of the larger of that and the length of its
 /// softening; below that ratio, less of it.
 fn limit(standing: &Standing, growth: f64) -> f64 {
@@ -46,6 +49,31 @@ impl Interfaces {
         let kind = &self.kinds[point.kind as usize];
         let Some(stiffness) = kind.stiffness else { return 0.0 };
         seen(point, &SpringInterface { law: kind.law, stiffness }, &field, growth)
+    }
+
+    /// The τ at which a point comes to how far it may go, where its nodes move by start + τ slope and its mode stays as it is; none where it does not answer to τ.
+    ///
+    /// - `place`: displacements of the last iterate [m]
+    pub(crate) fn step_in_mode(
+        &self,
+        at: PointPlace,
+        place: &[Vec3],
+        [start, slope]: [&[Vec3]; 2],
+        growth: f64,
+    ) -> Option<f64> {
+        let LedPair { at: point, led, .. } = self.led(at, place, growth)?;
+        let kind = &self.kinds[point.kind as usize];
+        let interface = SpringInterface { law: kind.law, stiffness: kind.stiffness? };
+        let ratio = |jump: Vec3| Some(interface.standing(&jump, &point.state)?.ratio);
+        let change = |way: Vec3| {
+            let step = DIFFERENCE * led.jump.norm() / way.norm();
+            Some((ratio(led.jump + way * step)? - ratio(led.jump)?) / step)
+        };
+        let [a, b] = point.pair.map(|node| node as usize);
+        let missing = point.local(start[b] - start[a]) - led.jump;
+        let by_load = point.frame * (slope[b] - slope[a]);
+        let tau = -change(missing)? / change(by_load)?;
+        tau.is_finite().then_some(tau)
     }
 
     /// The point that sees most over how far it may go, and that.

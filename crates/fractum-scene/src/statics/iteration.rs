@@ -23,8 +23,8 @@ const SLIPPING_FREELY: [usize; 2] = [ITERATIONS[0], 60];
 /// Looks along a way for the place at which the forces do no work any more, and the part of their work that may be left.
 const LOOKS: usize = 6;
 const LEFT: f64 = 0.5;
-/// Iterations that go all their way. Later ones go half of it where that leaves more out of balance: faces that soften and unload by turns come to rest so.
-const FULLY: usize = 5;
+/// How often a way at one load is halved that leaves more out of balance: faces that soften and unload by turns come to rest so.
+const MOST_HALVES: usize = 4;
 /// Unbalanced forces over those that drive a linear solution, below which they are rounding.
 const ROUNDING: f64 = 1e-11;
 /// Energy over that of the forces that drive a step on their way, below which it is rounding.
@@ -91,6 +91,11 @@ impl StaticSolver {
             self.respond(scene, &here, &there, ahead, present - found_at)?;
             let leads = self.lead.at;
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
+            if first && leads.is_some() && self.lead.at.is_none() {
+                // Where the load leads it does so from the start: the point was held where it would not have come to.
+                iteration = 0;
+                continue;
+            }
             tau = found;
             self.advance(&scene.solid, points, tau, monotone);
             let exact = boundary_at(scene, present, present + tau);
@@ -100,16 +105,22 @@ impl StaticSolver {
             }
             let from = std::mem::take(&mut self.touching.place);
             let mut found = self.look(scene, &exact, [present, tau], longest);
-            if points.is_empty() && !scene.interfaces().is_empty() {
-                if since == 0.0 {
+            if !scene.interfaces().is_empty() {
+                if since == 0.0 && points.is_empty() {
                     let start = (&from[..], &unbalanced[..]);
                     found = self.go_to_least_energy(scene, &exact, [present, tau], longest, start, found);
-                    if iteration > FULLY && found[0] > out_of_balance {
-                        for (place, from) in self.response.start.iter_mut().zip(&from) {
-                            *place = 0.5 * (*place + from);
-                        }
-                        found = self.look(scene, &exact, [present, tau], longest);
+                }
+                let mut halves = if since == 0.0 { MOST_HALVES } else { 0 };
+                while halves > 0 && found[0] > out_of_balance {
+                    halves -= 1;
+                    for (place, from) in self.response.start.iter_mut().zip(&from) {
+                        *place = 0.5 * (*place + from);
                     }
+                    if !points.is_empty() {
+                        scene.solid.effective_stresses(&self.response.start, &mut self.response.start_stress);
+                        self.advance(&scene.solid, points, 0.0, monotone);
+                    }
+                    found = self.look(scene, &exact, [present, tau], longest);
                 }
                 unbalanced.clone_from(&self.response.right);
             }
@@ -238,8 +249,10 @@ impl StaticSolver {
         }
         if by_damage {
             let (response, interfaces) = (&self.response, scene.interfaces());
-            let way = path::Way { solid: &scene.solid, points, interfaces, response, growth };
-            return self.lead.step(&way, longest);
+            let place = &self.touching.place;
+            let way = path::Way { solid: &scene.solid, points, interfaces, response, place, growth };
+            // Below no load at all it has lost its way.
+            return self.lead.step(&way, [-(scene.clock.time + longest), longest]);
         }
         let Control::Opening(opening) = &self.settings.control else { return Some(longest) };
         let target = opening.of(&scene.solid.displacement) + opening.step * self.pace.part;

@@ -35,7 +35,9 @@ impl Lead {
     }
 
     /// The step of the load parameter, and what leads from then on; none where there is no such step.
-    pub(super) fn step(&mut self, way: &Way<'_>, longest: f64) -> Option<f64> {
+    ///
+    /// - `lowest`: below it the load parameter does not go
+    pub(super) fn step(&mut self, way: &Way<'_>, [lowest, longest]: [f64; 2]) -> Option<f64> {
         let (tau, next) = match self.at {
             None => {
                 let (tau, stops) = way.largest_step(longest)?;
@@ -45,7 +47,9 @@ impl Lead {
                 }
             }
             Some(at) => {
-                let tau = way.step_of(at, longest)?;
+                // A point that has still the mode of the last iterate may go too far at any load, until it has its own.
+                let tau = way.step_of(at, longest).or_else(|| way.step_in_mode(at))?;
+                let tau = if tau < lowest { longest } else { tau.min(longest) };
                 match way.most_grown(tau) {
                     Some((other, growth)) if other != at && growth > BESIDE * way.growth => (tau, Some(other)),
                     _ if tau == longest => (tau, None),

@@ -366,7 +366,8 @@ impl StaticSolver {
                     false
                 }
                 Control::TimeThenPath | Control::Path | Control::Opening(_) => {
-                    self.pace.growth <= GROWTH[1] || growth.abs() == ONSET
+                    let shortest = scene.interfaces().is_empty() || self.pace.part <= SMALLEST_PART;
+                    (self.pace.growth <= GROWTH[1] && shortest) || growth.abs() == ONSET
                 }
             };
             if smallest && monotone {

@@ -36,6 +36,8 @@ pub(super) struct Way<'a> {
     pub(super) points: &'a [DamagePoint],
     pub(super) interfaces: &'a Interfaces,
     pub(super) response: &'a Response,
+    /// Displacements of the last iterate [m].
+    pub(super) place: &'a [Vec3],
     /// How far each edge and each point of an interface may go down its softening curve.
     pub(super) growth: f64,
 }
@@ -71,6 +73,12 @@ impl Way<'_> {
     pub(super) fn step_of(&self, at: PointPlace, longest: f64) -> Option<f64> {
         let only = Farthest::Interface(at);
         Some(self.go_back(longest, |tau| (self.seen(only, tau), only))?.0)
+    }
+
+    /// The same in the mode that it has, where its own gives none.
+    pub(super) fn step_in_mode(&self, at: PointPlace) -> Option<f64> {
+        let Response { start, slope, .. } = self.response;
+        self.interfaces.step_in_mode(at, self.place, [start, slope], self.growth)
     }
 
     /// The point of an interface that goes farthest down its curve at τ, and by which part of its length.
