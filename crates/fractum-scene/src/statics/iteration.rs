@@ -91,8 +91,8 @@ impl StaticSolver {
             self.respond(scene, &here, &there, ahead, present - found_at)?;
             let leads = self.lead.at;
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
-            if first && leads.is_some() && self.lead.at.is_none() {
-                // Where the load leads it does so from the start: the point was held where it would not have come to.
+            if first && leads.is_some() && self.lead.at.is_none() && !points.is_empty() {
+                // Where the load leads it does so from the start: the point was held where it would not have come to. Between elastic bodies it stays where their load snaps back.
                 iteration = 0;
                 continue;
             }
@@ -110,7 +110,9 @@ impl StaticSolver {
                     let start = (&from[..], &unbalanced[..]);
                     found = self.go_to_least_energy(scene, &exact, [present, tau], longest, start, found);
                 }
-                let mut halves = if since == 0.0 { MOST_HALVES } else { 0 };
+                // Elastic bodies have gone to the least energy of their way before.
+                let most = if points.is_empty() { 1 } else { MOST_HALVES };
+                let mut halves = if since == 0.0 { most } else { 0 };
                 while halves > 0 && found[0] > out_of_balance {
                     halves -= 1;
                     for (place, from) in self.response.start.iter_mut().zip(&from) {
