@@ -7,6 +7,7 @@ pub(super) mod vectors;
 
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeMap, BTreeSet};
+use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use super::diagnostic::MOST_LISTED;
@@ -90,6 +91,15 @@ impl Reader {
         if !self.meant.borrow().contains(&place.key) {
             self.note(Diagnostic::error(place, "is missing").expected(expected));
         }
+    }
+
+    /// Whether something below the key of a table is wrong; the whole case is none.
+    fn has_mistake_below(&self, key: &str) -> bool {
+        let is_below = |place: &Option<Place>| {
+            place.as_ref().and_then(|place| place.key.strip_prefix(key)).is_some_and(|rest| rest.starts_with('.'))
+        };
+        let diagnostics = self.diagnostics.borrow();
+        !key.is_empty() && diagnostics.iter().any(|note| note.severity == Severity::Error && is_below(&note.place))
     }
 
     /// Whether so much is wrong that suggestions help no more.
@@ -386,7 +396,15 @@ impl<'a> Table<'a> {
 
     /// Takes a constant quantity of the key's dimension, in SI.
     pub(super) fn quantity(&self, name: &'static str) -> Reading<'_, 'a, f64> {
-        self.read(name, |node| self.reader.quantity(node, self.dimension(name)))
+        self.read(name, |node| {
+            let value = self.reader.quantity(node, self.dimension(name))?;
+            if matches!(self.kind(name), Some(KeyKind::Angle)) && value.abs() > TAU {
+                let note = Diagnostic::error(&node.place, node.found()).expected(KeyKind::Angle.expected());
+                self.reader.note(note.remedy(format!("without a unit it is in radians: write \"{value} deg\"")));
+                return None;
+            }
+            Some(value)
+        })
     }
 
     /// Takes a whole number from 0 to 2^53.

@@ -133,7 +133,8 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
     if may_damage == Some(false) {
         table.refuse("damage", "without damage in its material");
     }
-    let damage = may_damage.unwrap_or(false) && table.flag("damage").or(true);
+    let is_wanted = table.flag("damage").or(true);
+    let damage = may_damage.unwrap_or(false) && is_wanted;
     for key in ["damage_where", "strength_factor"] {
         match may_damage {
             Some(true) if !damage => table.set_aside(key, "while damage = false"),

@@ -38,8 +38,12 @@ impl Table<'_> {
         });
     }
 
-    /// Reports the keys that nobody asked for: they have no effect, for the reason given.
+    /// Reports the keys that nobody asked for: they have no effect, for the reason given. Where no better reason than "here" is known and
+    /// something in the table is wrong, the reading may have ended before it came to them.
     pub(crate) fn finish(self, why: &str) {
+        if why == "here" && self.reader.has_mistake_below(&self.place.key) {
+            return;
+        }
         for (entry, _) in self.entries.iter().filter(|(_, used)| !used.get()) {
             self.no_effect(entry, why);
         }

@@ -558,6 +558,10 @@ fn mistakes_about_changes_of_meshes_are_told_where_they_stand() {
             "[[mesh.joints]]\nangle = 0\nspacing = 1\npersistence = 1.5\nlength = 2",
             "7:15: mesh.joints[0].persistence = 1.5; expected above 0 and below 1",
         ),
+        (
+            "[[mesh.joints]]\ndip = \"30 deg\"\ndip_direction = 90\nspacing = 1",
+            "6:17: mesh.joints[0].dip_direction = 90; expected an angle such as \"35 deg\"; without a unit it is in radians: write \"90 deg\"",
+        ),
         ("[[mesh.joints]]\nangle = 0\nspacng = 1", "6:1: mesh.joints[0].spacng is not a key; did you mean spacing?"),
         (
             "[[mesh.joints]]\ndip = \"100 deg\"\ndip_direction = 0\nspacing = 1",
@@ -578,4 +582,23 @@ fn mistakes_about_changes_of_meshes_are_told_where_they_stand() {
         let found = mistakes(&SMALL.replacen("[materials.steel]", &format!("{network}\n[materials.steel]"), 1));
         assert!(found.iter().any(|found| found.contains(message)), "{network}:\n{message}\n{found:#?}");
     }
+}
+
+#[test]
+fn keys_beside_a_wrong_one_are_not_told_to_have_no_effect() {
+    let interface =
+        "end = 1e-3\n[[interfaces]]\ngroup = \"a\"\ntensile_strength = \"1 MPa\"\nfracture_energy = \"10 J/m^2\"\n";
+    for (wrong, message) in [
+        ("friction_angle = 35", "without a unit it is in radians: write \"35 deg\""),
+        ("residual_friction_angle = \"95 deg\"", "expected from 0 to below 90 deg"),
+        ("dilation_angle = \"5 deg\"", "is larger than the residual friction angle"),
+    ] {
+        let found = mistakes(&SMALL.replacen("end = 1e-3", &format!("{interface}{wrong}"), 1));
+        assert!(found.len() == 1 && found[0].contains(message), "{wrong}: {found:#?}");
+    }
+    let of_material = SMALL.replacen("poisson_ratio = 0.3", "poisson_ratio = 0.7", 1);
+    let found = mistakes(&of_material.replacen("material = \"steel\"", "material = \"steel\"\ndamage = false", 1));
+    assert!(found.len() == 1 && found[0].contains("poisson_ratio"), "{found:#?}");
+    let inert = format!("{interface}bonded = false\nfriction_angle = 0.5");
+    assert_eq!(mistakes(&SMALL.replacen("end = 1e-3", &inert, 1)).len(), 3);
 }
