@@ -68,6 +68,15 @@ pub(crate) const LONGEST_ZONE: f64 = 100.0;
 const FRACTURE_ENERGIES: (f64, f64) = (1.0, 1e6);
 const ENERGIES: &[(&str, f64)] = &[("J/m^2", 1.0), ("N/mm", 1e3), ("kJ/m^2", 1e3)];
 
+/// Heat capacity per mass [J/(kg K)].
+pub(super) const HEAT_CAPACITY: Usual = Usual {
+    unit: "J/(kg K)",
+    range: (20.0, 2e4),
+    words: "20 J/(kg K) to 20 kJ/(kg K) (lead has 130, rock 800, water 4200 J/(kg K))",
+    common: (100.0, 5e3),
+    units: &[("J/(kg K)", 1.0), ("kJ/(kg K)", 1e3)],
+};
+
 impl Usual {
     /// Whether solids have such a value.
     pub(super) fn is_usual(&self, value: f64) -> bool {
@@ -94,7 +103,7 @@ impl Usual {
     }
 
     /// The number of a node in the unit that makes it common.
-    fn meant(&self, node: &Node, value: f64) -> Option<String> {
+    pub(super) fn meant(&self, node: &Node, value: f64) -> Option<String> {
         let number = number_of(node).unwrap_or(value);
         let common = |size: f64| (self.common.0..=self.common.1).contains(&(number * size));
         let (unit, _) = self.units.iter().find(|(_, size)| common(*size))?;

@@ -1,5 +1,7 @@
 //! `[heat]`, and what materials are to it.
 
+use fractum_output::number::push_shortest;
+use fractum_output::warning::Code;
 use fractum_scene::PackingConduction;
 
 use super::time_functions::time_function;
@@ -8,6 +10,8 @@ use crate::reader::Table;
 use crate::reader::presence::{exactly_one, optional};
 use crate::reader::vectors::field;
 use crate::selection::selection;
+use crate::tree::Value;
+use crate::usual::HEAT_CAPACITY;
 use crate::{Diagnostic, Spanned};
 
 /// Reads what a material is to heat; `Some(None)` where it says nothing.
@@ -15,13 +19,34 @@ pub(super) fn thermal(material: &Table<'_>) -> Option<Option<Spanned<Thermal>>> 
     let Some(table) = material.table("thermal") else { return Some(None) };
     let place = table.place.clone();
     let conductivity = table.quantity("conductivity").physical().required();
-    let heat_capacity = table.quantity("heat_capacity").physical().required();
+    let heat_capacity = table.quantity("heat_capacity").physical().usual(&HEAT_CAPACITY).required();
     let least = |value: &f64| value.abs() < 1.0;
     let expansion = table.quantity("expansion").check(least, "a strain per kelvin, such as \"1e-5 1/K\"");
     let expansion = expansion.or_if_absent(0.0);
     table.finish("here");
     let thermal = Thermal { conductivity: conductivity?, heat_capacity: heat_capacity?, expansion: expansion? };
     Some(Some(Spanned::new(thermal, place)))
+}
+
+/// Temperatures in degrees Celsius that are none in kelvin, but for the coldest of laboratories.
+const CELSIUS: std::ops::Range<f64> = -273.15..200.0;
+
+/// Warns of a temperature without a unit that was probably meant in degrees Celsius.
+fn doubt_kelvin(table: &Table<'_>, name: &str) {
+    let Some(node) = table.node_below(name) else { return };
+    let number = match &node.value {
+        Value::Number(number) => Some(*number),
+        Value::Text(text) => text.trim().parse().ok(),
+        _ => None,
+    };
+    let Some(number) = number.filter(|number| CELSIUS.contains(number)) else { return };
+    let note = Diagnostic::warning(Code::UnusualValue, &node.place, format!("{}, which is in kelvin", node.found()));
+    let [celsius, kelvin] = [number + 273.15, number].map(|kelvin| {
+        let mut text = String::new();
+        push_shortest(&mut text, kelvin);
+        text
+    });
+    table.reader.note(note.remedy(format!("write \"{celsius} K\" for degrees Celsius, else \"{kelvin} K\"")));
 }
 
 /// Reads heat, if there is any; nothing where it is wrong.
@@ -37,6 +62,7 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
     };
     let place = table.place.clone();
     let initial = field(&table, "initial_temperature").spanned().required();
+    ["initial_temperature", "stress_free_temperature"].iter().for_each(|name| doubt_kelvin(&table, name));
     let stress_free = optional(&table, "stress_free_temperature", |name| table.quantity(name).positive().given());
     let scheme = table.choice("scheme").or_if_absent(HeatScheme::Explicit);
     let step = optional(&table, "step", |name| table.quantity(name).positive().spanned().given());
@@ -77,6 +103,7 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
 fn condition(table: Table<'_>) -> Option<HeatCondition> {
     let on = selection(&table);
     let kind = exactly_one(&table, &["temperature", "flux", "power", "source", "convection"]);
+    doubt_kelvin(&table, "temperature");
     let function = |name| time_function(&table, name).spanned().required();
     let kind = kind.and_then(|kind| match kind {
         "temperature" => function(kind).map(HeatKind::Temperature),
@@ -97,6 +124,7 @@ fn condition(table: Table<'_>) -> Option<HeatCondition> {
 fn convection(condition: &Table<'_>) -> Option<HeatKind> {
     let table = condition.table("convection")?;
     let coefficient = table.quantity("coefficient").physical().required();
+    doubt_kelvin(&table, "ambient");
     let ambient = time_function(&table, "ambient").spanned().required();
     table.finish("here");
     Some(HeatKind::Convection { coefficient: coefficient?, ambient: ambient? })

@@ -15,8 +15,8 @@ pub(super) fn interface(table: Table<'_>, elasticity: Option<(f64, f64)>) -> Opt
     let area = area(&table);
     let tensile_strength = table.quantity("tensile_strength").not_negative().usual(&STRENGTH).or(f64::INFINITY);
     let shear_strength = table.quantity("shear_strength").not_negative().usual(&STRENGTH).or(f64::INFINITY);
-    let internal_friction = table.quantity("internal_friction").not_negative().or(0.0);
-    let friction = table.quantity("friction").not_negative().or(0.5);
+    let internal_friction = table.quantity("internal_friction").not_negative().coefficient().or(0.0);
+    let friction = table.quantity("friction").not_negative().coefficient().or(0.5);
     let tension_softening = table.quantity("tension_softening").positive().or(f64::INFINITY);
     let shear_softening = table.quantity("shear_softening").positive().or(f64::INFINITY);
     let failure = table.choice("failure").or(InterfaceFailure::default());

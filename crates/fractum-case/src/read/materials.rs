@@ -55,6 +55,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     });
     super::ratios::doubt(
         &table,
+        density,
         young_modulus,
         damage.as_ref().and_then(Option::as_ref),
         fracture.as_ref().and_then(Option::as_ref),
@@ -249,7 +250,7 @@ pub(super) fn contact(parent: &Table<'_>, default: ContactParameters, apart: &[&
     for key in apart {
         table.node(key);
     }
-    let friction = table.quantity("friction").not_negative().or(default.friction);
+    let friction = table.quantity("friction").not_negative().coefficient().or(default.friction);
     let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
     let damping_ratio = if table.has("restitution") {
         table.refuse("damping_ratio", "beside restitution, from which it follows");

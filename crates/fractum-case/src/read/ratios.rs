@@ -6,7 +6,7 @@ use fractum_output::warning::Code;
 
 use crate::model::{BondFailure, Damage};
 use crate::reader::Table;
-use crate::usual::{LONGEST_ZONE, STRENGTH, YOUNG_MODULUS, energy_meant};
+use crate::usual::{DENSITY, LONGEST_ZONE, STRENGTH, YOUNG_MODULUS, energy_meant};
 use crate::{Diagnostic, Spanned};
 
 /// Tensile strength over Young's modulus [-]: theory gives a tenth at most; the weakest soil has 1e-6.
@@ -15,15 +15,40 @@ const STRAIN: std::ops::RangeInclusive<f64> = 1e-7..=0.2;
 /// Length of the process zone E G_f/f_t² [m] of solids: ceramics have 0.1 mm, concrete 0.3 m.
 const ZONE: std::ops::RangeInclusive<f64> = 1e-6..=LONGEST_ZONE;
 
-/// Warns of a strength that does not suit the modulus, and of a fracture energy that does not suit both.
+/// Speed of waves in the stiffest solids [m/s]: diamond has 18 km/s.
+const WAVE: f64 = 2e4;
+
+/// Warns of a density that makes waves faster than any solid has them.
+fn doubt_wave(material: &Table<'_>, density: f64, young: f64) {
+    let wave = (young / density).sqrt();
+    let Some(node) = material.node_below("density").filter(|_| wave > WAVE) else { return };
+    let found = format!(
+        "is {}, which with young_modulus, {}, gives waves of {}",
+        quantity(density, "kg/m^3"),
+        quantity(young, "Pa"),
+        quantity(wave, "m/s")
+    );
+    let note = Diagnostic::warning(Code::UnusualValue, &node.place, found).expected("at most 20 km/s (steel has 5)");
+    let meant = DENSITY.meant(node, density).filter(|_| (young / (1e3 * density)).sqrt() <= WAVE);
+    material.reader.note(match meant {
+        Some(meant) => note.remedy(format!("did you mean \"{meant}\"?")),
+        None => note.remedy("check the units of both"),
+    });
+}
+
+/// Warns of a density and of a strength that do not suit the modulus, and of a fracture energy that does not suit both.
 pub(super) fn doubt(
     material: &Table<'_>,
+    density: Option<f64>,
     young_modulus: Option<f64>,
     damage: Option<&Spanned<Damage>>,
     fracture: Option<&Spanned<BondFailure>>,
 ) {
     // What is doubted by itself makes every ratio wrong.
     let Some(young) = young_modulus.filter(|young| YOUNG_MODULUS.is_usual(*young)) else { return };
+    if let Some(density) = density.filter(|density| DENSITY.is_usual(*density)) {
+        doubt_wave(material, density, young);
+    }
     let of_damage = damage.map(|damage| ("damage", damage.value.law.tensile_strength));
     let of_bonds = fracture.and_then(|failure| Some(("fracture", failure.value.strength.tensile_strength?)));
     let mut doubted = false;

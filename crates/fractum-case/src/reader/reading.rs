@@ -1,5 +1,7 @@
 //! A value on its way from a table into the model, with its checks.
 
+use fractum_output::warning::Code;
+
 use super::Table;
 use crate::key_kind::KeyKind;
 use crate::tree::Node;
@@ -98,6 +100,18 @@ impl Reading<'_, '_, f64> {
             && let Some(doubt) = usual.doubt(node, *value, self.table.reader.place_of_parameter(node))
         {
             self.table.reader.note(doubt);
+        }
+        self
+    }
+
+    /// Warns of a coefficient of friction that is an angle in degrees.
+    pub(crate) fn coefficient(self) -> Self {
+        if let (State::Given(value), Some(node)) = (&self.state, self.node)
+            && (5.0..90.0).contains(value)
+        {
+            let note = Diagnostic::warning(Code::UnusualValue, &node.place, node.found());
+            let note = note.expected("a coefficient, the tangent of the angle of friction (steel on steel has 0.6)");
+            self.table.reader.note(note.remedy(format!("did you mean \"tan({value} deg)\"?")));
         }
         self
     }
