@@ -108,6 +108,50 @@ pub(super) fn unheld(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnos
     Some(note.remedy("support the bodies elsewhere; what is thrown needs an initial_velocity"))
 }
 
+/// Solids that one support moves along an axis along which nothing else acts on them: they follow it without strain.
+pub(super) fn moved_as_a_whole(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
+    let flows = case.flows.gas.is_some() || case.flows.heat.is_some() || case.flows.liquid.is_some();
+    let acted = !case.loads.is_empty() || case.in_situ.is_some() || flows || !case.later.is_empty();
+    let thrown = bodies.iter().any(|body| body.solid.initial_velocity.iter().any(Option::is_some));
+    let springs = case.supports.iter().any(|support| support.surface.is_some());
+    let pressed = case.interfaces.iter().any(|interface| interface.pressure.is_some());
+    if bodies.is_empty() || !alone || acted || thrown || springs || pressed || mesh.whole.is_some() {
+        return None;
+    }
+    if pieces(mesh, bodies).iter().any(|piece| *piece != 0) {
+        return None;
+    }
+    match case.solver.kind {
+        SolverKind::Static => {}
+        SolverKind::Explicit if case.solver.end >= PASSAGES * passage(case, mesh, bodies) => {}
+        _ => return None,
+    }
+    let moves = |motion: &Option<Spanned<Motion>>| motion.as_ref().is_some_and(|own| !is_at_rest(&own.value));
+    let mut driving = case.supports.iter().filter(|support| support.motion.iter().any(moves));
+    let (support, None) = (driving.next()?, driving.next()) else { return None };
+    let one = driven(mesh, &support.on)?;
+    let lies_around = bodies.iter().any(|body| body.solid.is_axisymmetric());
+    let is_free = |axis: usize| {
+        let function = support.motion[axis].as_ref().map(|motion| &motion.value);
+        let Some(Motion::Displacement(function) | Motion::Velocity(function)) = function else { return true };
+        let holding = case.supports.iter().filter(|other| other.motion[axis].is_some()).count();
+        holding == 1 && !function.depends_on_position() && !function.is_zero() && !(lies_around && axis == 0)
+    };
+    if !(0..3).all(is_free) {
+        return None;
+    }
+    let along: Vec<&str> =
+        (0..3).filter(|&axis| moves(&support.motion[axis])).map(|axis| ["x", "y", "z"][axis]).collect();
+    let along = along.join(" and ");
+    let found = format!(
+        "= \"{}\": it moves the bodies along {along}, and nothing holds them there: they follow without strain",
+        support.on.label()
+    );
+    let note = Diagnostic::warning(Code::Unheld, one.place, found);
+    Some(note.remedy(format!("hold another side along {along}")))
+}
+
 /// Speed of a wave along a bar of the material of a body [m/s].
 pub(super) fn wave_speed(case: &Case, body: &Own) -> f64 {
     let material = &case.materials[body.solid.material];

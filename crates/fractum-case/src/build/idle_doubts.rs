@@ -1,14 +1,18 @@
 //! Doubts about scenes that nothing moves, and loads that a support takes at once.
 
+use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::warning::Code;
 
+use super::body_doubts::Own;
 use crate::measure::Count;
 use crate::model::{
-    BodyKind, Case, Load, LoadKind, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
+    BodyKind, Case, Load, LoadKind, LooseSource, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
 };
 use crate::{Diagnostic, TimeFunction};
 
+/// Share of the area of facets along an axis below which they do not look along it.
+const FLAT: f64 = 1e-6;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Forces and tractions in a stage whose nodes a support holds along them.
@@ -17,13 +21,17 @@ pub(super) fn taken_at_once(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let taken = |load: &Load| {
-        let (LoadKind::Force { on, force: components } | LoadKind::Traction { on, traction: components }) = &load.kind
-        else {
-            return None;
+        let (on, pushed) = match &load.kind {
+            LoadKind::Force { on, force: components } | LoadKind::Traction { on, traction: components } => {
+                (on, (0..3).filter(|&axis| components[axis].is_some()).collect::<Vec<usize>>())
+            }
+            other => {
+                let LoadKind::Pressure { on, .. } = other else { return None };
+                (on, looks_along(mesh, &on.group.as_ref()?.value))
+            }
         };
         let place = on.place().filter(|_| case.particle_group(on.group_name()).is_none())?;
         let loaded = nodes_of(mesh, on)?;
-        let pushed: Vec<usize> = (0..3).filter(|&axis| components[axis].is_some()).collect();
         let held = |axis: usize| {
             let mut free = loaded.clone();
             for support in case.supports.iter().filter(|support| support.motion[axis].is_some()) {
@@ -32,7 +40,7 @@ pub(super) fn taken_at_once(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
             }
             free.is_empty()
         };
-        if loaded.is_empty() || !pushed.iter().all(|&axis| held(axis)) {
+        if loaded.is_empty() || pushed.is_empty() || !pushed.iter().all(|&axis| held(axis)) {
             return None;
         }
         let axes = pushed.into_iter().map(|axis| AXES[axis]).collect::<Vec<_>>().join(", ");
@@ -44,6 +52,53 @@ pub(super) fn taken_at_once(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
         Some(note.remedy("load another group, or let these nodes free"))
     };
     case.loads.iter().filter_map(taken).collect()
+}
+
+/// Axes along which some facet of a group looks.
+fn looks_along(mesh: &Mesh, group: &str) -> Vec<usize> {
+    let mut areas = Vec3::zeros();
+    facet_normals(mesh, group).iter().for_each(|normal| areas += normal.abs());
+    (0..3).filter(|&axis| areas[axis] > FLAT * areas.max()).collect()
+}
+
+/// Normals of the facets of a group, as long as their areas (times two in space); those of its lines where it has no triangles.
+pub(super) fn facet_normals(mesh: &Mesh, group: &str) -> Vec<Vec3> {
+    let at = |node: u32| mesh.nodes[node as usize];
+    let groups = mesh.group(group);
+    let triangles = groups.iter().flat_map(|group| &group.triangles).map(|&facet| mesh.triangles[facet as usize]);
+    let normals: Vec<Vec3> = triangles.map(|[a, b, c]| (at(b) - at(a)).cross(&(at(c) - at(a)))).collect();
+    if !normals.is_empty() {
+        return normals;
+    }
+    let lines = groups.iter().flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize]);
+    lines.map(|[a, b]| (at(b) - at(a)).cross(&Vec3::z())).collect()
+}
+
+/// Solids whose every node supports prescribe along every axis: nothing is left to compute.
+pub(super) fn all_prescribed(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let solids = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
+    let moves = matches!(case.solver.kind, SolverKind::Explicit | SolverKind::Static | SolverKind::Auto);
+    let strains_itself = case.flows.heat.is_some() || case.in_situ.is_some() || !case.later.is_empty();
+    if bodies.is_empty() || !solids || !moves || strains_itself || mesh.whole.is_some() {
+        return None;
+    }
+    let axes = if bodies.iter().all(|body| body.plane) { 2 } else { 3 };
+    let mut held = vec![0u8; mesh.nodes.len()];
+    for support in &case.supports {
+        let of_axes = (0..axes).filter(|&axis| support.motion[axis].is_some()).fold(0, |all, axis| all | (1 << axis));
+        for node in nodes_of(mesh, &support.on).unwrap_or_default() {
+            held[node as usize] |= of_axes;
+        }
+    }
+    let all = (1 << axes) - 1;
+    if bodies.iter().flat_map(|body| &body.nodes).any(|&node| held[node as usize] != all) {
+        return None;
+    }
+    let whole =
+        case.supports.iter().max_by_key(|support| nodes_of(mesh, &support.on).map_or(0, |nodes| nodes.len()))?;
+    let found = format!("= \"{}\": supports prescribe the motion of every node along every axis", whole.on.label());
+    let note = Diagnostic::warning(Code::NoEffect, whole.on.place()?, found);
+    Some(note.remedy("nothing is left to compute: take the group of one side"))
 }
 
 /// Nodes that are meant, ascending; none of sets of particles.
@@ -58,7 +113,7 @@ fn nodes_of(mesh: &Mesh, on: &Selection) -> Option<Vec<u32>> {
     (!nodes.is_empty()).then_some(nodes)
 }
 
-/// A scene of solids that nothing moves in any stage.
+/// A scene that nothing moves in any stage.
 pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
     let stages = || std::iter::once(case).chain(&case.later);
     let moved = |support: &Support| {
@@ -73,8 +128,13 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
             let thrown = rigid.initial_velocity.iter().any(Option::is_some);
             thrown || rigid.functions().any(|function| !function.value.is_zero())
         }
-        BodyKind::Bonded(_) | BodyKind::Particles(_) => true,
+        BodyKind::Bonded(bonded) => bonded.initial_velocity.iter().any(Option::is_some),
+        BodyKind::Particles(loose) => {
+            loose.initial_velocity.iter().any(Option::is_some)
+                || matches!(loose.source, LooseSource::File { velocity_unit: Some(_), .. })
+        }
     };
+    let breaks = |material: &Material| material.damage.is_some() || material.fracture.is_some();
     let acts = |stage: &Case| {
         let pressed = stage.interfaces.iter().any(|interface| interface.pressure.is_some());
         let modes_or_heat = matches!(stage.solver.kind, SolverKind::Modes | SolverKind::Heat);
@@ -82,7 +142,7 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
         modes_or_heat
             || flows
             || pressed
-            || stage.in_situ.is_some()
+            || stage.in_situ.is_some() && (!stage.interfaces.is_empty() || stage.materials.iter().any(breaks))
             || stage.excavation.is_some()
             || stage.supports.iter().any(moved)
             || stage.loads.iter().any(|load| load.kind.functions().iter().any(|function| !function.value.is_zero()))

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use fractum_fem::{ElementKind, Solid};
-use fractum_mesh::{CutAlong, Mesh};
+use fractum_mesh::{CutAlong, CutError, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{
@@ -60,7 +60,12 @@ pub fn cut_mesh(case: &Case, mesh: &mut Mesh) -> Result<(), Diagnostics> {
             InterfaceFaces::Between(groups) => &groups.place,
         };
         let note = Diagnostic::error(place, format!(": {error}"));
-        let remedy = "embed the surface in its volume (Gmsh: BooleanFragments, or Line{...} In Surface{...}) and give it a physical group";
+        let apart = matches!(error, CutError::NothingBetween { .. });
+        let remedy = if apart && case.mesh.as_ref().is_some_and(|mesh| mesh.join.is_none()) {
+            "set mesh.join = true where both have nodes at the same positions; else let them share a face (Gmsh: BooleanFragments)"
+        } else {
+            "embed the surface in its volume (Gmsh: BooleanFragments, or Line{...} In Surface{...}) and give it a physical group"
+        };
         Diagnostics::of_many(vec![note.expected("faces with elements on both sides").remedy(remedy)])
     })
 }

@@ -16,6 +16,7 @@ mod gauges;
 mod heat;
 mod idle_doubts;
 mod in_situ;
+mod in_situ_doubts;
 mod inner_facets;
 mod interfaces;
 mod liquid;

@@ -9,8 +9,9 @@ use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, pieces, thin, unheld};
-use super::idle_doubts::{measured_in_vain, taken_at_once, unmoved};
+use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, thin, unheld};
+use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, taken_at_once, unmoved};
+use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
 use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
@@ -61,16 +62,18 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     let without = undamped(case, mesh, &bodies);
     doubts.extend(if without.is_empty() { rebounds(case) } else { without });
     doubts.extend(adhesion_in_vain(case));
-    doubts.extend(unheld(case, mesh, &bodies));
+    doubts.extend(unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies)));
     let joined = pieces(mesh, &bodies);
     let is_alone = |piece: u32| joined.iter().filter(|other| **other == piece).count() == 1;
     doubts.extend(bodies.iter().zip(&joined).filter_map(|(body, &piece)| thin(case, mesh, body, is_alone(piece))));
     doubts.extend(bodies.iter().filter_map(|body| torn_at_once(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
-    doubts.extend(bodies.iter().filter_map(|body| thickness(case, body)));
+    doubts.extend(bodies.iter().filter_map(|body| thickness(case, mesh, body)));
     doubts.extend(odd_reactions(case, mesh, &bodies));
     doubts.extend(unmoved(case));
+    doubts.extend(all_prescribed(case, mesh, &bodies));
+    doubts.extend(doubts_of_in_situ(case, mesh, &bodies));
     doubts.extend(measured_in_vain(case));
     let mut begin = 0.0;
     for (before, stage) in std::iter::once(case).chain(&case.later).zip(&case.later) {
@@ -150,10 +153,16 @@ fn unequal_plates(mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
             continue;
         }
         second.nodes.iter().for_each(|&node| marked[node as usize] = true);
+        // Both sides of an interface count as one.
+        for [one, other] in mesh.cuts.iter().flat_map(|face| (0..3).map(|corner| face.sides.map(|side| side[corner]))) {
+            if second.nodes.binary_search(&one).is_ok() || second.nodes.binary_search(&other).is_ok() {
+                (marked[one as usize], marked[other as usize]) = (true, true);
+            }
+        }
         let touches = |first: &&&Own| first.nodes.iter().any(|&node| marked[node as usize]);
         if let Some(first) = plates[..index].iter().find(|first| other(first) && touches(first)) {
             let found = format!(
-                "= \"{}\" has a thickness of {} in plane {}, and \"{}\", with which it has nodes in common, {} in plane {}",
+                "= \"{}\" has a thickness of {} in plane {}, and \"{}\", with which it has nodes or an interface in common, {} in plane {}",
                 second.name.value,
                 quantity(thickness(second), "m"),
                 state(second),
@@ -174,8 +183,19 @@ fn in_plane_stress(body: &Own) -> bool {
     body.plane && body.solid.plane.as_ref().is_some_and(|own| own.value == Plane::Stress)
 }
 
-/// A plane body without a thickness in a case of forces: it is one metre thick.
-fn thickness(case: &Case, body: &Own) -> Option<Diagnostic> {
+/// A plane body without a thickness in a case of forces, which is one metre thick; or a plate in plane stress that is thicker than it is large.
+fn thickness(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
+    if let Some(thickness) = body.solid.thickness.as_ref().filter(|own| in_plane_stress(body) && own.value != 1.0) {
+        let (low, high) = extent(mesh, std::slice::from_ref(body));
+        let size = (high - low).max();
+        if body.nodes.is_empty() || mesh.whole.is_some() || thickness.value <= size {
+            return None;
+        }
+        let [thick, size] = [thickness.value, size].map(|length| quantity(length, "m"));
+        let found = format!("makes a plate of {size} that is {thick} thick, in plane stress");
+        let note = Diagnostic::warning(Code::Thickness, &thickness.place, found).expected("a plate, or plane strain");
+        return Some(note.remedy("check its unit: a number without one is in metres"));
+    }
     let force = |load: &Load| matches!(&load.kind, LoadKind::Force { .. });
     let in_newton = |probe: &Probe| matches!(&probe.kind, ProbeKind::Reaction(_) | ProbeKind::ContactForce(_));
     let forces = case.loads.iter().any(force) || case.probes.iter().any(in_newton);
@@ -226,13 +246,7 @@ fn suctions(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
 
 /// Whether all facets of a group have one normal.
 fn is_flat(mesh: &Mesh, group: &str) -> bool {
-    let at = |node: u32| mesh.nodes[node as usize];
-    let groups = mesh.group(group);
-    let triangles = groups.iter().flat_map(|group| &group.triangles).map(|&facet| mesh.triangles[facet as usize]);
-    let of_triangles = triangles.map(|[a, b, c]| (at(b) - at(a)).cross(&(at(c) - at(a))));
-    let lines = groups.iter().flat_map(|group| &group.lines).map(|&line| mesh.lines[line as usize]);
-    let of_lines = lines.map(|[a, b]| at(b) - at(a));
-    let mut normals = of_triangles.chain(of_lines).map(|normal| normal.normalize());
+    let mut normals = facet_normals(mesh, group).into_iter().map(|normal| normal.normalize());
     let Some(first) = normals.next() else { return false };
     normals.all(|normal| normal.dot(&first).abs() > FLAT)
 }

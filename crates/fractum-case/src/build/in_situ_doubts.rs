@@ -1,0 +1,78 @@
+//! Doubts about the stress of the solids before the run: its sign, and components that were forgotten.
+
+use fractum_math::Vec3;
+use fractum_mesh::Mesh;
+use fractum_output::number::quantity;
+use fractum_output::warning::Code;
+
+use super::body_doubts::Own;
+use super::idle_doubts::facet_normals;
+use crate::Diagnostic;
+use crate::model::{Case, InSitu, SolverKind};
+
+/// Tension over the largest stress that is told.
+const TENSION: f64 = 0.01;
+/// Share of the area of the far field along an axis above which its stress should be given.
+const FACING: f64 = 0.1;
+
+/// Doubts about the in-situ stress.
+pub(super) fn doubts_of_in_situ(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+    // Strings and struts vibrate under either sign.
+    let Some(stress) = case.in_situ.as_ref().filter(|_| case.solver.kind != SolverKind::Modes) else {
+        return Vec::new();
+    };
+    let pulls = pulling(stress, mesh, bodies);
+    pulls.into_iter().chain(forgotten(case, stress, mesh, bodies)).collect()
+}
+
+/// Rock that is pulled, as it is where compression was written as positive.
+fn pulling(stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let is_plane = bodies.iter().all(|body| body.plane);
+    let (mut tension, mut largest, mut place) = (0.0, 0.0f64, Vec3::zeros());
+    for &node in bodies.iter().flat_map(|body| &body.nodes) {
+        let at = mesh.nodes[node as usize];
+        let matrix = stress.at(at).to_matrix();
+        let principal = if is_plane {
+            let plane = matrix.fixed_view::<2, 2>(0, 0).into_owned().symmetric_eigenvalues();
+            [plane.max(), plane.min()]
+        } else {
+            let all = matrix.symmetric_eigenvalues();
+            [all.max(), all.min()]
+        };
+        largest = principal.iter().fold(largest, |largest, stress| largest.max(stress.abs()));
+        if principal[0] > tension {
+            (tension, place) = (principal[0], at);
+        }
+    }
+    if tension <= TENSION * largest {
+        return None;
+    }
+    let found = format!(
+        ".stress is a tension of {} at ({:.4e}, {:.4e}, {:.4e}) m",
+        quantity(tension, "Pa"),
+        place.x,
+        place.y,
+        place.z
+    );
+    let note = Diagnostic::warning(Code::Suction, &stress.place, found).expected("compression, which is negative");
+    Some(note.remedy("change its sign, unless the body is pulled"))
+}
+
+/// A normal stress that is not given, along which facets of the far field look: nothing presses there.
+fn forgotten(case: &Case, stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    if mesh.whole.is_some() || stress.stress.iter().all(Option::is_none) {
+        return None;
+    }
+    let answering = case.supports.iter().filter(|support| support.surface.is_some());
+    let groups = answering.filter_map(|support| support.on.group.as_ref()).chain(&stress.groups);
+    let mut areas = Vec3::zeros();
+    for group in groups {
+        facet_normals(mesh, &group.value).iter().for_each(|normal| areas += normal.abs());
+    }
+    let axes = if bodies.iter().all(|body| body.plane) { 2 } else { 3 };
+    let axis = (0..axes).find(|&axis| stress.stress[axis].is_none() && areas[axis] > FACING * areas.sum())?;
+    let (name, along) = [("xx", "x"), ("yy", "y"), ("zz", "z")][axis];
+    let found = format!(".stress has no {name}: facets of the far field that look along {along} bear nothing");
+    let note = Diagnostic::warning(Code::NoEffect, &stress.place, found);
+    Some(note.remedy(format!("give {name}; {name} = 0 where nothing presses")))
+}
