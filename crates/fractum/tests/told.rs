@@ -7,8 +7,8 @@ use fractum_math::Vec3;
 use fractum_mesh::MshFormat;
 use fractum_mesh::generate::{structured_box, structured_rectangle};
 
-use crate::common::{Workplace, history, mesh_bytes, run, summary};
-use crate::warnings::listed;
+use crate::common::{BONDED_BAR, Workplace, bar, history, mesh_bytes, run, summary};
+use crate::warnings::{BAR, listed};
 
 /// A bead between a floor and a press, or shot at the floor.
 pub(crate) const BEAD: &str = r#"fractum = 1
@@ -71,6 +71,41 @@ fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
     assert_eq!(longer.code, Some(0), "{}", longer.stderr);
     let [more, _] = largest(&summary(&place, "light"));
     assert!((more - 0.08).abs() < 0.01 && more > most, "{more} {most}");
+}
+
+#[test]
+fn a_run_in_which_nothing_touches_or_moves_is_told() {
+    let probe = "[[probes]]\nname = \"push\"\nreaction = { group = \"floor\", along = \"z\" }\n[solver]";
+    let pressed = BEAD.replace("\"19 ms\"", "\"1.5 ms\"").replace("[solver]", probe);
+    for (case, code) in [(pressed.replace("\"-1 m/s\"", "\"1 m/s\""), Some("misses")), (pressed, None)] {
+        let place = Workplace::new(&case);
+        fs::write(place.path("bead.csv"), "0,0,0.01,0.01\n").unwrap();
+        run(&place, "out", "1");
+        let all = listed(&place, "out");
+        assert_eq!(all.iter().map(|[code, ..]| code.as_str()).collect::<Vec<_>>(), Vec::from_iter(code), "{all:?}");
+    }
+    // The pressure acts on the side that is held.
+    let taken = BAR.replace("PLANE", "xyz");
+    let support = &taken[taken.rfind("[[supports]]").unwrap()..taken.find("[solver]").unwrap()];
+    let probe = "[[loads]]\ngroup = \"x-\"\npressure = \"1 MPa\"\n[[probes]]\nname = \"moved\"\ndisplacement = { group = \"x+\", along = \"x\" }\n";
+    let place = Workplace::new(&taken.replace(support, probe));
+    fs::write(place.path("bar.msh"), mesh_bytes(&bar(), MshFormat::V4_1Binary)).unwrap();
+    run(&place, "out", "1");
+    let all = listed(&place, "out");
+    let [[before, _, load], [after, _, text]] = all.as_slice() else { panic!("{all:?}") };
+    assert!(before == "no-effect" && load.contains("take the load at once"), "{all:?}");
+    assert!(after == "no-effect" && text.contains("all was zero throughout (moved)"), "{all:?}");
+}
+
+#[test]
+fn a_bonded_body_that_is_strained_too_far_is_told() {
+    let elastic = BONDED_BAR.replace("fracture = { criterion_strength = \"60 MPa\" }\n", "");
+    for (way, codes) in [("6 um", &[][..]), ("300 um", &["large-strain"])] {
+        let place = Workplace::new(&elastic.replace("6 um", way));
+        run(&place, "out", "1");
+        let all = listed(&place, "out");
+        assert_eq!(all.iter().map(|[code, ..]| code.as_str()).collect::<Vec<_>>(), codes, "{way}: {all:?}");
+    }
 }
 
 /// A bead so fast that it ends within a few steps, before the second row of the history.

@@ -1,6 +1,7 @@
 //! Looks at the state of a scene: is the theory still valid?
 
 use fractum_fem::{Extreme, Extremes, fields};
+use fractum_math::Vec3;
 
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -16,6 +17,8 @@ const SOFT: f64 = 0.05;
 pub(crate) const TURNED: f64 = std::f64::consts::PI / 18.0;
 /// Strain beyond which the law of small stretches is off by as much.
 const STRAINED: f64 = 0.05;
+/// One of so many bonds is strained in a body that is strained itself.
+const STRAINED_BONDS: usize = 10;
 /// Stress over the strength that is told where nothing can break.
 const OVERLOADED: f64 = 1.1;
 /// Compression over the tensile strength that no brittle material bears.
@@ -33,6 +36,7 @@ impl Scene {
         look_at_damping(self);
         look_at_springs(self);
         look_at_solids(self);
+        look_at_bonds(self);
         look_at_interfaces(self);
         look_at_liquid(self);
         self.look_at_overlaps();
@@ -115,6 +119,36 @@ fn look_at_solids(scene: &mut Scene) {
         if let Some(Extreme { body, element, value }) = extreme.filter(|extreme| extreme.value > limit) {
             scene.note(what, Site::Element { body, element }, value);
         }
+    }
+}
+
+/// Looks at the stretch of the bonds that hold: where a tenth of those of a body is strained, the body is.
+fn look_at_bonds(scene: &mut Scene) {
+    if scene.bonded.bodies.is_empty() || has_noticed(scene, Notice::Strain) {
+        return;
+    }
+    let (position, reference) = (&scene.bonded.particles.position, &scene.bonded.reference);
+    let mut found = None;
+    for body in &scene.bonded.bodies {
+        let pairs = body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.is_joined(*bond));
+        let (mut joined, mut beyond, mut most) = (0usize, 0usize, (0.0, 0u32));
+        for (_, &[i, j]) in pairs {
+            let length = |at: &[Vec3]| (at[j as usize] - at[i as usize]).norm();
+            let before = length(reference);
+            let strain = ((length(position) - before) / before).abs();
+            joined += 1;
+            beyond += usize::from(strain > STRAINED);
+            if strain > most.0 {
+                most = (strain, i);
+            }
+        }
+        if STRAINED_BONDS * beyond > joined {
+            found = Some(most);
+            break;
+        }
+    }
+    if let Some((strain, particle)) = found {
+        scene.note(Notice::Strain, Site::Particle(particle), strain);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fractum_case::model::ProbeKind;
+use fractum_case::model::{BodyKind, ProbeKind};
 use fractum_fem::{RateReport, cracks, motion, neighbours, rate_report};
 use fractum_math::Vec3;
 use fractum_output::number::{at_instant, percent, quantity};
@@ -100,6 +100,7 @@ impl Simulation {
         self.warn_of_giving_way()?;
         if matches!(end, End::Finished(_)) {
             self.warn_of_servos()?;
+            self.warn_of_idle_probes()?;
         }
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
@@ -281,6 +282,47 @@ impl Simulation {
         let text = format!("\"{name}\" was never above zero, and has not fallen from a largest value");
         let found = Warning::new(Code::NoEffect, "solver.stop_when", text);
         self.warn(found.remedy("measure it in the other direction, such as along = \"-y\""))
+    }
+
+    /// Warns where all that is measured of motion and forces was zero throughout, or all that is measured of contact.
+    fn warn_of_idle_probes(&mut self) -> Result<(), Failure> {
+        use ProbeKind::{ContactForce, Displacement, Moment, Reaction, Strain, Stress, Velocity};
+        if self.solver.shows_modes() {
+            return Ok(());
+        }
+        let series = &self.recorder.state().series;
+        let names_of = |is_one: &dyn Fn(&ProbeKind) -> bool| {
+            let probes = self.case.probes.iter().zip(series).filter(|(probe, _)| is_one(&probe.kind));
+            let (names, zero): (Vec<&str>, Vec<bool>) = probes
+                .map(|(probe, values)| (probe.name.value.as_str(), values.iter().all(|value| *value == 0.0)))
+                .unzip();
+            let idle = !names.is_empty() && zero.into_iter().all(|zero| zero);
+            idle.then(|| names.join(", "))
+        };
+        let of_motion = |kind: &ProbeKind| {
+            matches!(kind, Displacement(_) | Velocity(_) | Reaction(_) | Moment(_) | Stress(_) | Strain(_))
+        };
+        let is_rigid = |name: &str| {
+            let mut bodies = self.case.bodies.iter();
+            bodies.any(|body| body.name.value == name && matches!(body.kind, BodyKind::Rigid(_)))
+        };
+        let is_contact = |kind: &ProbeKind| match kind {
+            ContactForce(_) => true,
+            Reaction(own) => is_rigid(own.on.group_name()),
+            _ => false,
+        };
+        let found = if let Some(names) = names_of(&is_contact) {
+            let text = format!("no force of contact was found at any instant that was recorded ({names})");
+            Warning::new(Code::Misses, "probes", text)
+                .remedy("check what should meet: its place, its direction, and the end of the run; record a short touch more often")
+        } else if let Some(names) = names_of(&of_motion) {
+            let text = format!("nothing has moved, and there is no force: all was zero throughout ({names})");
+            Warning::new(Code::NoEffect, "probes", text)
+                .remedy("check which groups loads and supports act on, and their axes")
+        } else {
+            return Ok(());
+        };
+        self.warn(found)
     }
 
     /// Warns of the first of a kind.
