@@ -233,6 +233,11 @@ pub enum StepError {
         /// Time in which the fastest motion grows by e [s].
         growth: f64,
     },
+    /// Nothing that has a mass is free to vibrate.
+    #[error(
+        "supports prescribe the motion of all nodes and particles: nothing vibrates - let them hold one side alone"
+    )]
+    NothingFree,
     /// The step is above the stable limit.
     #[error(
         "step {step}, t = {time:.6e} s: unstable: elements and bonds hold {ratio:.1} times the energy put in; fastest near {culprit}; \u{394}t = {dt:.3e} s, \

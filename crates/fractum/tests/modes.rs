@@ -56,6 +56,18 @@ fn what_is_not_held_is_told_and_what_is_no_solid_is_refused() {
     assert!(ended.stderr.contains("body \"floor\"") && ended.stderr.contains("solid bodies"), "{}", ended.stderr);
 }
 
+#[test]
+fn a_body_that_is_held_all_over_has_no_vibrations() {
+    let held = SNAP_BACK.lines().filter(|line| !line.starts_with("probes")).map(|line| match line {
+        line if line.starts_with("supports") => "supports = [{ group = \"body\", fix = \"xyz\" }]",
+        line => line,
+    });
+    let place = Workplace::new(&held.collect::<Vec<_>>().join("\n"));
+    let ended = place.fractum(&["modes", "case.toml", "--count", "2", "-o", "out"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("nothing vibrates - let them hold one side alone"), "{}", ended.stderr);
+}
+
 /// A free bar under a stress along it.
 fn stressed(stress: &str) -> String {
     let free = SNAP_BACK.lines().filter(|line| !line.starts_with("supports") && !line.starts_with("probes"));

@@ -17,7 +17,8 @@ use crate::scene::Scene;
 /// - `stop`: whether to give up
 ///
 /// # Errors
-/// [`ModesError::Linear`] if the factor does not fit, [`ModesError::Unstable`] if the solids buckle under their stress.
+/// [`ModesError::Linear`] if the factor does not fit, [`ModesError::Unstable`] if the solids buckle under their stress, and [`ModesError::Held`] if
+/// nothing is free.
 pub fn find_modes(scene: &Scene, settings: ModesSettings, stop: fn() -> bool) -> Result<Modes, ModesError> {
     match (scene.solid.body_count(), scene.bonded.is_empty()) {
         (0, _) => bonded_modes::find(scene, settings, stop),

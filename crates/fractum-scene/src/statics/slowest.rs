@@ -36,6 +36,9 @@ pub enum ModesError {
         /// Time in which the fastest one grows by e [s].
         time: f64,
     },
+    /// No unknown with a mass is free.
+    #[error("supports prescribe the motion of all that has a mass")]
+    Held,
 }
 
 /// What vibrates, and how its systems are solved.
@@ -81,6 +84,9 @@ impl<const B: usize> Vibrating<'_, B> {
         settings: ModesSettings,
         stop: fn() -> bool,
     ) -> Result<Found<B>, ModesError> {
+        if self.mass.iter().flatten().all(|mass| *mass == 0.0) {
+            return Err(ModesError::Held);
+        }
         let (known, small) = (rigid.len(), SHIFT * self.rate);
         let tolerance = TOLERANCES[usize::from(self.linear == LinearSolver::Iterative)];
         let search = Search { count: settings.count, tolerance, small, most: MOST_EXTENSIONS, stop };

@@ -30,6 +30,7 @@ impl ModesRun {
             let found = found.map_err(|error| match error {
                 ModesError::Linear(error) => StepError::NoSolution { step, time, reason: error.to_string() },
                 ModesError::Unstable { time: growth } => StepError::Buckles { growth },
+                ModesError::Held => StepError::NothingFree,
             })?;
             if is_interrupted() {
                 return Err(StepError::Interrupted { step, time });
