@@ -9,9 +9,9 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts, Drive,
-    ElasticMaterial, EnergyKind, FacetMesh, FlatFaces, Form, Frame, Inertia, Loads, RigidBody, Scene, SceneSettings,
-    Shape, SolidSurface, Supports, TimeStepSettings,
+    Along, Bonded, BondedPart, ContactBody, ContactMaterial, ContactPairs, ContactParameters, ContactProbe, Contacts,
+    Drive, ElasticMaterial, EnergyKind, FacetMesh, FlatFaces, Form, Frame, Inertia, Loads, PairContact, RigidBody,
+    Scene, SceneSettings, Shape, SolidSurface, Supports, TimeStepSettings,
 };
 use fractum_tests::{settings, softening};
 
@@ -190,6 +190,41 @@ fn a_block_that_breaks_on_free_rigid_facets_keeps_momentum_and_energy() {
     let below = (0..125).map(|i| scene.solid.position(i).z - scene.contacts.rigid_bodies()[0].displacement().z);
     assert!(below.clone().fold(0.0, f64::min) > -5e-3, "{}", below.fold(0.0, f64::min));
     assert!(scene.ledger().residual_max_relative < 1e-3, "{:?}", scene.ledger());
+}
+
+/// The same where every two bodies, and each with itself, have a coefficient of friction of their own.
+fn with_friction_of_pairs(mut scene: Scene, friction: f64) -> Scene {
+    let solids = (0..scene.solid.body_count()).map(ContactBody::Solid);
+    let rigid_bodies = (0..scene.contacts.rigid_bodies().len()).map(ContactBody::Rigid);
+    let particles = (0..scene.bonded.bodies().len()).map(ContactBody::Particles);
+    let bodies: Vec<ContactBody> = solids.chain(rigid_bodies).chain(particles).collect();
+    let mut pairs = ContactPairs::default();
+    for first in &bodies {
+        for second in &bodies {
+            let surface = ContactParameters { friction, ..SURFACE };
+            pairs.set([*second, *first], PairContact { surface, work_of_adhesion: None });
+        }
+    }
+    scene.contacts = std::mem::take(&mut scene.contacts).with_pairs(&pairs);
+    scene.debris = scene.debris.clone().with_pairs(pairs);
+    scene
+}
+
+#[test]
+fn friction_of_pairs_acts_in_all_contacts_of_solids_rigid_facets_and_particles() {
+    // Nothing rubs where all pairs are smooth, though their surfaces are not, and pairs with the coefficients of their surfaces change no bit.
+    for (target, beads) in [(Target::Solid, (24, 200.0)), (Target::Facets, (0, 200.0))] {
+        let made = crash(target, beads);
+        let [mut smooth, mut rough, mut alone] =
+            [with_friction_of_pairs(made.clone(), 0.0), with_friction_of_pairs(made.clone(), 0.4), made];
+        for scene in [&mut smooth, &mut rough, &mut alone] {
+            advance(scene, 2000);
+            assert!(scene.debris.len() > 20 && scene.counts().contacts > 10, "{:?}", scene.counts());
+        }
+        let friction = [&smooth, &rough].map(|scene| scene.ledger()[EnergyKind::Friction]);
+        assert!(friction[0].abs() < 1e-9 * friction[1], "{friction:?}");
+        assert!(bits(&rough) == bits(&alone));
+    }
 }
 
 #[test]

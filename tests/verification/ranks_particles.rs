@@ -8,14 +8,14 @@ use fractum_fem::{LocalDamping, Solid};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Along, BondFracture, Bonded, BondedPart, ContactBody, ContactMaterial, ContactParameters, ContactProbe, Contacts,
-    Domain, ElasticMaterial, FlatFaces, Form, Frame, Gravity, Load, Loads, Motion, NodalForce, RigidBody, Scene,
-    SceneSettings, Shape, Support, Supports,
+    Along, BondFracture, Bonded, BondedPart, ContactBody, ContactMaterial, ContactPairs, ContactParameters,
+    ContactProbe, Contacts, Domain, ElasticMaterial, FlatFaces, Form, Frame, Gravity, Load, Loads, Motion, NodalForce,
+    PairContact, RigidBody, Scene, SceneSettings, Shape, Support, Supports,
 };
 use fractum_tests::{noise, settings};
 
 use crate::meeting::{Target, crash};
-use crate::ranks::{RANKS, bits, same_on_ranks, shared};
+use crate::ranks::{RANKS, advance, bits, same_on_ranks, shared};
 
 const RADIUS: f64 = 0.01;
 const SURFACE: ContactParameters = ContactParameters { friction: 0.3, damping_ratio: 0.1, rolling_friction: 0.0 };
@@ -173,6 +173,23 @@ fn loose_beads_on_a_bonded_block_on_a_plane_have_the_same_bits_on_any_number_of_
         counts.contacts
     });
     assert!(contacts[1] > contacts[0], "beads that stick: {contacts:?}");
+}
+
+#[test]
+fn bodies_with_coefficients_of_their_own_have_the_same_bits_on_any_number_of_ranks() {
+    let mut pairs = ContactPairs::default();
+    let surface = ContactParameters { friction: 0.05, damping_ratio: 0.3, rolling_friction: 0.1 };
+    let [block, cloud, plane] = [ContactBody::Particles(0), ContactBody::Particles(1), ContactBody::Rigid(0)];
+    pairs.set([plane, cloud], PairContact { surface, work_of_adhesion: Some(50.0) });
+    pairs.set([cloud, block], PairContact { surface, work_of_adhesion: None });
+    let made = || {
+        let mut scene = beads(0.0);
+        scene.contacts = std::mem::take(&mut scene.contacts).with_pairs(&pairs);
+        scene
+    };
+    let (paired, mut alone) = (same_on_ranks(300, made), beads(0.0));
+    advance(&mut alone, 300);
+    assert!(paired.counts().contacts > 100 && bits(&paired) != bits(&alone), "{:?}", paired.counts());
 }
 
 /// A block that breaks on another one, with beads around whose forces on both are asked for: they meet facets, discrete elements and each other.

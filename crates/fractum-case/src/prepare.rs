@@ -44,7 +44,8 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache, tell: &dyn Fn(&st
     for body in &case.bodies {
         match &body.kind {
             BodyKind::Bonded(bonded) => {
-                let surface = body.kind.surface(&case.materials);
+                let own = case.contact_between([body, body]).map(|own| own.surface);
+                let surface = own.unwrap_or_else(|| body.kind.surface(&case.materials));
                 match prepare_bonded(&bonded_request(case, &body.name.value, bonded, surface), mesh, cache, tell) {
                     Ok(made) => {
                         let doubt = |doubt: fractum_prepare::Doubt| {

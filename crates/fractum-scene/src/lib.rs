@@ -13,6 +13,7 @@ mod bonded;
 mod clock;
 mod conditions;
 mod conduct;
+mod contact_pairs;
 mod contacts;
 pub mod coupling;
 mod domain;
@@ -44,14 +45,15 @@ mod watch;
 pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
 pub use clock::{Clock, Phase, TimeStepSettings};
 pub use conditions::*;
+pub use contact_pairs::{ContactBody, ContactPairs, PairContact};
 pub use contacts::{
-    ContactBody, ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap,
-    OverlapWith, ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
+    ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap, OverlapWith,
+    ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
 };
 pub use domain::{Domain, Left};
 pub use error::{SceneError, StepError};
 pub use excavation::Excavation;
-pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution};
+pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution, restitution_of_damping};
 pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;

@@ -2,6 +2,7 @@
 
 mod beds;
 mod bodies;
+mod contact_pairs;
 mod cost;
 mod estimate;
 mod excavation;
@@ -98,6 +99,7 @@ impl Plan {
             plan.describe_mesh(source, mesh);
         }
         plan.describe_bodies(case, scene, bonded, reads);
+        plan.describe_contact_pairs(case);
         plan.describe_scatter(case, &built.weibull);
         plan.describe_rates(case, scene);
         plan.describe_ties(&built.ties);

@@ -6,8 +6,8 @@ use fractum_mesh::topology;
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{
-    ContactMaterial, ContactParameters, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame, Inertia,
-    NodesOnShape, Overlap, OverlapWith, RigidBody, Scene, Servo, ServoArea, Shape, SolidSurface, pieces,
+    ContactMaterial, ContactPairs, ContactParameters, Contacts, Drive, ElasticMaterial, FacetMesh, Form, Frame,
+    Inertia, NodesOnShape, Overlap, OverlapWith, RigidBody, Scene, Servo, ServoArea, Shape, SolidSurface, pieces,
 };
 
 use super::bodies::{Numbering, Part};
@@ -59,6 +59,7 @@ pub(super) fn with_contacts(
     facets: &[Vec<[u32; 3]>],
     surface: &[u32],
     rigid_bodies: Vec<RigidBody>,
+    pairs: &ContactPairs,
     tied: &[u32],
     warnings: &mut Vec<Diagnostic>,
 ) -> Option<Scene> {
@@ -78,7 +79,8 @@ pub(super) fn with_contacts(
     if !context.diagnostics.is_empty() {
         return None;
     }
-    let mut contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, gravity(context));
+    let contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, gravity(context));
+    let mut contacts = contacts.with_pairs(pairs);
     if !tied.is_empty() {
         // A bonded region fits its cavity within the tolerance of the packing.
         contacts.take_up_on_solids(&scene.solid, &scene.bonded.particles, |i| {

@@ -9,8 +9,8 @@ use fractum_output::warning::Code;
 use fractum_scene::ContactParameters;
 
 use super::body_doubts::{Own, extent, pieces};
-use crate::Diagnostic;
 use crate::model::{Body, BodyKind, Case, Motion, RigidBody, RigidShape, SolverKind, Support};
+use crate::{Diagnostic, Place};
 
 /// Instants at which the motion of a tool is looked at.
 const LOOKS: u32 = 1000;
@@ -60,7 +60,8 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
     }
     let doubt = |(pair, (count, node)): ([usize; 2], (usize, u32))| {
         let [first, second] = pair.map(|index| &bodies[index]);
-        if touches && (says_how(first) || says_how(second)) {
+        let is_pair = case.contact_pairs.iter().any(|pair| pair.is_of(first.solid.material, second.solid.material));
+        if touches && (says_how(first) || says_how(second) || is_pair) {
             return None;
         }
         let so = if touches { "they touch there, and are not joined" } else { "nothing joins them" };
@@ -172,23 +173,24 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
     if !moves || !is_driven || !alone || case.solver.subcycling.is_some() || !case.bodies.iter().all(held) {
         return Vec::new();
     }
-    let doubt = |body: &Body| {
-        if !matches!(body.kind, BodyKind::Solid(_) | BodyKind::Rigid(_)) {
-            return None;
-        }
-        let own = body.kind.surface(&case.materials);
-        if own.damping_ratio == ContactParameters::default().damping_ratio {
-            return None;
-        }
-        let found = format!("= \"{}\": the damping ratio or restitution of its contact has no effect", body.name.value);
-        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
-        Some(
-            note.remedy(
-                "driven rigid bodies stop the nodes of solids at once; remove it, and damp the solid by damping",
-            ),
-        )
+    let doubt = |(place, whose, ratio): (&Place, String, f64)| {
+        let found = format!("{whose}: the damping ratio or restitution of its contact has no effect");
+        let remedy = "driven rigid bodies stop the nodes of solids at once; remove it, and damp the solid by damping";
+        let usual = ContactParameters::default().damping_ratio;
+        (ratio != usual).then(|| Diagnostic::warning(Code::NoEffect, place, found).remedy(remedy))
     };
-    case.bodies.iter().filter_map(doubt).collect()
+    damping_ratios(case, |body| matches!(body.kind, BodyKind::Solid(_) | BodyKind::Rigid(_)))
+        .filter_map(doubt)
+        .collect()
+}
+
+/// Damping ratios of contact with their places: of some bodies by name, and of pairs of materials.
+fn damping_ratios(case: &Case, which: impl Fn(&&Body) -> bool) -> impl Iterator<Item = (&Place, String, f64)> {
+    let own = |body: &Body| body.kind.surface(&case.materials).damping_ratio;
+    let bodies = case.bodies.iter().filter(which);
+    let bodies = bodies.map(move |body| (&body.name.place, format!("= \"{}\"", body.name.value), own(body)));
+    let pairs = case.contact_pairs.iter();
+    bodies.chain(pairs.filter_map(|pair| Some((&pair.place, String::new(), pair.coefficients.damping_ratio?))))
 }
 
 /// A restitution of solids that meet each other or rigid bodies by springs: it holds for single nodes, and the bodies part faster.
@@ -208,20 +210,15 @@ pub(super) fn rebounds(case: &Case) -> Vec<Diagnostic> {
     if !moves || case.bodies.len() < 2 || !case.bodies.iter().all(meets) || !case.bodies.iter().any(flies) {
         return Vec::new();
     }
-    let doubt = |body: &Body| {
-        let BodyKind::Solid(_) = &body.kind else { return None };
-        let own = body.kind.surface(&case.materials);
-        if own.damping_ratio <= ContactParameters::default().damping_ratio {
-            return None;
-        }
+    let doubt = |(place, whose, ratio): (&Place, String, f64)| {
         let found = format!(
-            "= \"{}\": the damping ratio or restitution of its contact holds for single nodes: as a whole it parts almost as fast as it came",
-            body.name.value
+            "{whose}: the damping ratio or restitution of its contact holds for single nodes: as a whole a solid parts almost as fast as it came"
         );
-        let note = Diagnostic::warning(Code::NoEffect, &body.name.place, found);
-        Some(note.remedy("damp the solid by damping; restitution holds for particles"))
+        let remedy = "damp the solid by damping; restitution holds for particles";
+        let usual = ContactParameters::default().damping_ratio;
+        (ratio > usual).then(|| Diagnostic::warning(Code::NoEffect, place, found).remedy(remedy))
     };
-    case.bodies.iter().filter_map(doubt).collect()
+    damping_ratios(case, |body| matches!(body.kind, BodyKind::Solid(_))).filter_map(doubt).collect()
 }
 
 /// A work of adhesion of bodies that do not stick, and of rigid bodies without particles that would stick to them.

@@ -7,6 +7,7 @@ mod bodies;
 mod body_doubts;
 mod bonded;
 mod conditions;
+mod contact_pairs;
 mod contacts;
 mod division;
 mod doubts;
@@ -237,7 +238,8 @@ impl<'a> Context<'a> {
         let gauges = self.gauges(&numbering, &solid, &bonded);
         self.without_mistakes()?;
         let surfaces = parts.iter().map(|part| part.body.surface(&self.case.materials)).collect();
-        let debris = Debris::new(&solid, surfaces);
+        let pairs = contact_pairs::contact_pairs(self.case, &parts);
+        let debris = Debris::new(&solid, surfaces).with_pairs(pairs.clone());
         let surface_nodes = nodes_of(&boundary);
         let rigid_bodies = contacts::rigid_bodies(self, facets_of_tools);
         let shapes = contacts::shape_contacts(&rigid_bodies);
@@ -256,6 +258,7 @@ impl<'a> Context<'a> {
             &boundary_of_parts,
             &surface_nodes,
             rigid_bodies,
+            &pairs,
             &tied,
             &mut warnings,
         )?;

@@ -3,6 +3,8 @@
 use fractum_fem::{Formulation, Kinematics, Plane};
 use fractum_scene::ContactParameters;
 
+#[cfg(doc)]
+use super::Case;
 use super::{BondedBody, LooseBody, Material, RigidBody};
 use crate::choice::choice;
 use crate::{Field, Spanned};
@@ -30,8 +32,18 @@ pub enum BodyKind {
 }
 
 impl BodyKind {
-    /// Friction and damping of its surface. Every contact of a case takes them from here: of solids and the discrete elements that
-    /// they leave, of particles, of the faces of cracks, and of rigid bodies.
+    /// Index into `Case::materials`; none of a rigid body that has no material.
+    pub fn material(&self) -> Option<usize> {
+        match self {
+            BodyKind::Solid(own) => Some(own.material),
+            BodyKind::Bonded(own) => Some(own.material),
+            BodyKind::Particles(own) => Some(own.material),
+            BodyKind::Rigid(own) => own.material,
+        }
+    }
+
+    /// Friction and damping of its surface. Every contact of a case takes them from here, or from a
+    /// [pair](Case::contact_between): of solids and the discrete elements that they leave, of particles, of the faces of cracks, and of rigid bodies.
     pub fn surface(&self, materials: &[Material]) -> ContactParameters {
         match self {
             BodyKind::Solid(own) => own.surface(materials),

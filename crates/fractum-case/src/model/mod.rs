@@ -3,6 +3,8 @@
 mod body;
 mod bonded;
 mod boundary;
+mod contact;
+mod contact_pair;
 mod excavation;
 mod gas;
 mod gauges;
@@ -34,6 +36,8 @@ use fractum_scene::EnergyKind;
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource};
 pub use boundary::{Components, Detonation, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
+pub use contact::ContactCoefficients;
+pub use contact_pair::ContactPair;
 pub use excavation::Excavation;
 pub use gas::{Gas, GasHole, GasLaw, Preset};
 pub use gauges::Gauges;
@@ -72,6 +76,8 @@ pub struct Case {
     pub mesh: Option<MeshSource>,
     /// Materials, in the order of the file.
     pub materials: Vec<Material>,
+    /// Pairs of materials with coefficients of contact of their own, in the order of the file.
+    pub contact_pairs: Vec<ContactPair>,
     /// Bodies, in the order of the file; at least one.
     pub bodies: Vec<Body>,
     /// Ties between bonded bodies and solids, in the order of the file.

@@ -3,7 +3,7 @@
 use fractum_math::Vec3;
 use fractum_scene::ContactParameters;
 
-use super::{Components, FileContent};
+use super::{Components, ContactCoefficients, FileContent};
 use crate::{Field, Spanned, TimeFunction};
 
 /// A rigid body.
@@ -19,6 +19,8 @@ pub struct RigidBody {
     pub contact: ContactParameters,
     /// Work of adhesion between two such bodies [J/m²].
     pub work_of_adhesion: f64,
+    /// What of these the body says itself.
+    pub own_contact: ContactCoefficients,
     /// Prescribed velocity [m/s] along x, y, z; `None` = held, or free.
     pub velocity: Components,
     /// Prescribed angular velocity [rad/s] about axes through its reference point; `None` = held.

@@ -7,6 +7,7 @@ use fractum_output::warning::Code;
 
 use super::bonded::bonded;
 use super::loose::loose;
+use super::materials;
 use super::rigid::rigid;
 use crate::model::{Body, BodyKind, Material, SolidBody, WHOLE_MESH};
 use crate::reader::Table;
@@ -172,18 +173,8 @@ fn solid(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut
 
 /// The material that a body names, which counts as used from now on.
 fn material_of(table: &Table<'_>, materials: &[(String, Option<Material>)], used: &mut [bool]) -> Option<usize> {
-    let material = table.text("material").spanned().required().and_then(|name| {
-        let found = materials.iter().position(|(known, _)| *known == name.value);
-        if found.is_none() {
-            let known = materials.iter().map(|(name, _)| name.as_str());
-            let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
-            table.reader.note(match materials {
-                [] => note.remedy("it has no [materials.NAME]"),
-                _ => table.reader.suggest(note, &name.value, known, "materials here"),
-            });
-        }
-        found
-    });
+    let name = table.text("material").spanned().required();
+    let material = name.and_then(|name| materials::named(table.reader, &name, materials));
     if let Some(used) = material.and_then(|index| used.get_mut(index)) {
         *used = true;
     }

@@ -5,9 +5,9 @@ use fractum_output::warning::Code;
 use fractum_scene::{ContactParameters, damping_of_restitution};
 
 use super::fracture::{FRICTION_ANGLE, read_friction_angle};
-use crate::model::{Damage, Material};
-use crate::reader::Table;
+use crate::model::{ContactCoefficients, Damage, Material};
 use crate::reader::presence::optional;
+use crate::reader::{Reader, Table};
 use crate::usual::{DENSITY, FRACTURE_ENERGY, STRENGTH, YOUNG_MODULUS};
 use crate::{Diagnostic, Spanned};
 
@@ -21,6 +21,24 @@ pub(super) fn read(root: &Table<'_>) -> Vec<(String, Option<Material>)> {
     let materials = materials.collect();
     table.finish("here");
     materials
+}
+
+/// The index of the material with a name; noted where there is none.
+pub(super) fn named(
+    reader: &Reader,
+    name: &Spanned<String>,
+    materials: &[(String, Option<Material>)],
+) -> Option<usize> {
+    let found = materials.iter().position(|(known, _)| *known == name.value);
+    if found.is_none() {
+        let known = materials.iter().map(|(name, _)| name.as_str());
+        let note = Diagnostic::error(&name.place, format!("= \"{}\" is not a material of this case", name.value));
+        reader.note(match materials {
+            [] => note.remedy("it has no [materials.NAME]"),
+            _ => reader.suggest(note, &name.value, known, "materials here"),
+        });
+    }
+    found
 }
 
 fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
@@ -62,8 +80,7 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
     );
     let thermal = super::heat::thermal(&table);
     let contact_modulus = contact_modulus(&table);
-    let work_of_adhesion = work_of_adhesion(&table, 0.0);
-    let contact = contact(&table, ContactParameters::default(), &["young_modulus", "work_of_adhesion"]);
+    let contact = contact(&table, &["young_modulus"]);
     table.finish("here");
     Some(Material {
         name,
@@ -76,9 +93,9 @@ fn material(table: Table<'_>, name: Spanned<String>) -> Option<Material> {
         interfaces: interfaces.map_or(Some(None), |interfaces| interfaces.map(Some))?,
         fracture: fracture.map_or(Some(None), |fracture| fracture.map(Some))?,
         thermal: thermal?,
-        contact,
+        contact: contact.over(ContactParameters::default()),
         contact_modulus: contact_modulus?,
-        work_of_adhesion,
+        work_of_adhesion: contact.work_of_adhesion.unwrap_or(0.0),
     })
 }
 
@@ -237,29 +254,32 @@ fn contact_modulus(parent: &Table<'_>) -> Option<Option<f64>> {
     contact.quantity("young_modulus").physical().usual(&YOUNG_MODULUS).map(Some).or_if_absent(None)
 }
 
-/// Work of adhesion in a table `contact` [J/m²].
-pub(super) fn work_of_adhesion(parent: &Table<'_>, default: f64) -> f64 {
-    parent.table_or_empty("contact").quantity("work_of_adhesion").not_negative().or(default)
-}
-
-/// The `contact` table of a material or rigid body.
+/// The `contact` table of a material or rigid body, as far as it gives coefficients.
 ///
-/// - `default`: what counts where nothing is said; `apart`: keys that are read by themselves
-pub(super) fn contact(parent: &Table<'_>, default: ContactParameters, apart: &[&'static str]) -> ContactParameters {
+/// - `apart`: keys that are read by themselves
+pub(super) fn contact(parent: &Table<'_>, apart: &[&'static str]) -> ContactCoefficients {
     let table = parent.table_or_empty("contact");
     for key in apart {
         table.node(key);
     }
-    let friction = table.quantity("friction").not_negative().coefficient().or(default.friction);
-    let rolling_friction = table.quantity("rolling_friction").not_negative().or(default.rolling_friction);
+    let coefficients = coefficients(&table);
+    table.finish("here");
+    coefficients
+}
+
+/// Coefficients of contact in a table.
+pub(super) fn coefficients(table: &Table<'_>) -> ContactCoefficients {
     let damping_ratio = if table.has("restitution") {
         table.refuse("damping_ratio", "beside restitution, from which it follows");
         let restitution = table.quantity("restitution").check(|e| *e > 0.0 && *e <= 1.0, "above 0, at most 1");
-        restitution.map(damping_of_restitution).or(default.damping_ratio)
+        restitution.map(damping_of_restitution).given()
     } else {
-        let ratio = table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1");
-        ratio.or(default.damping_ratio)
+        table.quantity("damping_ratio").check(|ratio| (0.0..=1.0).contains(ratio), "from 0 to 1").given()
     };
-    table.finish("here");
-    ContactParameters { friction, rolling_friction, damping_ratio }
+    ContactCoefficients {
+        friction: table.quantity("friction").not_negative().coefficient().given(),
+        rolling_friction: table.quantity("rolling_friction").not_negative().given(),
+        damping_ratio,
+        work_of_adhesion: table.quantity("work_of_adhesion").not_negative().given(),
+    }
 }

@@ -4,6 +4,7 @@ mod bedding;
 mod bodies;
 mod bonded;
 mod boundary;
+mod contact_pairs;
 mod detonation;
 mod excavation;
 mod expect;
@@ -198,6 +199,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let parameters = parameters::read(&table);
     let materials = materials::read(&table);
     let bodies = bodies::read(&table, &materials);
+    let contact_pairs = contact_pairs::read(&table, &materials);
     let ties = ties::read(&table, bodies.as_deref());
     let interfaces = interfaces::read(&table);
     let mesh = mesh(&table, bodies.as_deref());
@@ -234,6 +236,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         source,
         mesh: mesh?,
         materials: materials.into_iter().map(|(_, material)| material).collect::<Option<_>>()?,
+        contact_pairs: contact_pairs?,
         bodies: bodies?,
         ties: ties?,
         interfaces: interfaces?,

@@ -33,9 +33,9 @@ const KINDS: [Kind; 6] = [Kind::Plane, Kind::Box, Kind::Cylinder, Kind::Sphere, 
 pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Option<&Material>) -> Option<RigidBody> {
     let kinds: Vec<(&'static str, Kind)> = SHAPES.into_iter().zip(KINDS).collect();
     let kind = table.one_of("shape", &kinds).required();
-    let work_of_adhesion = materials::work_of_adhesion(table, here.map_or(0.0, |material| material.work_of_adhesion));
-    let contact =
-        materials::contact(table, here.map(|material| material.contact).unwrap_or_default(), &["work_of_adhesion"]);
+    let own_contact = materials::contact(table, &[]);
+    let contact = own_contact.over(here.map(|material| material.contact).unwrap_or_default());
+    let of_material = here.map_or(0.0, |material| material.work_of_adhesion);
     let solid_shape = matches!(kind, Some(Kind::Box | Kind::Cylinder | Kind::Sphere));
     if kind.is_some() && !solid_shape {
         table.refuse("inside", "but on a box, cylinder or sphere");
@@ -72,7 +72,8 @@ pub(super) fn rigid(table: &Table<'_>, material: Option<Option<usize>>, here: Op
         inside,
         material: material.map_or(Some(None), |index| index.map(Some))?,
         contact,
-        work_of_adhesion,
+        work_of_adhesion: own_contact.work_of_adhesion.unwrap_or(of_material),
+        own_contact,
         velocity: velocity?,
         spin: spin?,
         free: free?,

@@ -267,6 +267,46 @@ fn each_mistake_has_one_clear_message() {
             "material = \"stel\"",
             "12:12: bodies[0].material = \"stel\" is not a material of this case; did you mean \"steel\"?",
         ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"stel\"]\nfriction = 0.3",
+            "16:21: contact_pairs[0].between[1] = \"stel\" is not a material of this case; did you mean \"steel\"?",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\"]\nfriction = 0.3",
+            "16:11: contact_pairs[0].between names 1 material; expected two materials, or one twice for bodies of the same material",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nfriction = 0.3",
+            "15:1: contact_pairs[0].between is missing; expected two materials, or one twice for bodies of the same material",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]",
+            "15:1: contact_pairs[0].friction is missing; expected one at least of friction, rolling_friction, restitution, damping_ratio, work_of_adhesion",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]\nfricton = 0.3",
+            "17:1: contact_pairs[0].fricton is not a key; did you mean friction?",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]\nfriction = -0.3",
+            "17:12: contact_pairs[0].friction = -0.3; expected at least 0",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]\nrestitution = 0.9\ndamping_ratio = 0.1",
+            "18:1: contact_pairs[0].damping_ratio has no effect beside restitution, from which it follows; remove it",
+        ),
+        (
+            "end = 1e-3",
+            "end = 1e-3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]\nfriction = 0.3\n[[contact_pairs]]\nbetween = [\"steel\", \"steel\"]\nrestitution = 0.9",
+            "18:1: contact_pairs[1]: \"steel\" and \"steel\" have their coefficients at line 15, in whatever order; write them into one table",
+        ),
         ("fractum = 1", "fractum = 2", "1:11: fractum = 2; expected 1, the version this program reads"),
         ("fractum = 1", "", "fractum is missing; expected a whole number"),
         ("end = 1e-3", "", "13:1: solver.end is missing; expected a time such as \"0.2 ms\""),

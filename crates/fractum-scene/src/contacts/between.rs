@@ -6,22 +6,11 @@ use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
 
-use super::Contacts;
 use super::debris_among::DebrisAmong;
 use super::nodes_on_shape::NodesOnShape;
+use super::{ContactBody, Contacts};
 use crate::conditions::Along;
 use crate::coupling::Debris;
-
-/// A body as contact knows it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactBody {
-    /// A solid body, with its nodes, facets and discrete elements.
-    Solid(usize),
-    /// A rigid body.
-    Rigid(usize),
-    /// A bonded or loose body.
-    Particles(usize),
-}
 
 /// Which force of contact is wanted: on one body, from another, along a direction at each place of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]

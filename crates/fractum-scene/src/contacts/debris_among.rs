@@ -8,7 +8,7 @@ use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::{Vec3, Work};
 
-use super::ContactMaterial;
+use super::{ContactBody, ContactMaterial};
 use crate::coupling::Debris;
 
 /// How much faster a turning sphere answers to the tangential spring: 1 + m r²/I.
@@ -98,12 +98,13 @@ impl DebrisAmong {
         let count = particles.len();
         let law = |i: u32, j: u32| {
             let (particle, born) = (i as usize, (j as usize).checked_sub(count)?);
-            let material = &made.materials[*made.body.get(particle)? as usize];
+            let body = *made.body.get(particle)? as usize;
+            let material = &made.materials[body];
             let node = debris.state().nodes[born];
             let radii = [radius[particle], radius[j as usize]];
             let masses = [particles.mass[particle], solid.mass[node as usize]];
             let (e, nu) = debris.mean_elasticity(node, &material.elastic);
-            let surface = material.surface.against(debris.surface(node));
+            let surface = debris.surface_with(node, ContactBody::Particles(body), material.surface);
             Some(Linear::between_spheres(e, nu, radii, masses, surface))
         };
         contacts.renew(&Spheres { position, velocity, spin, radius }, law);

@@ -135,7 +135,6 @@ impl Contacts {
             return Vec::new();
         }
         let alone = self.among.is_none() && self.solids.is_empty();
-        let damping = self.rigid_bodies.iter().map(|rigid_body| rigid_body.surface.damping_ratio).fold(0.0, f64::max);
         let (mut shift, mut frequency_square) = (Vec::with_capacity(particles.len()), 0.0f64);
         let mut stiffness = Vec::with_capacity(faces.len());
         for (body, faces) in faces.into_iter().enumerate() {
@@ -148,7 +147,8 @@ impl Contacts {
             shift.extend(of_body);
             shift.resize(own.end, Vec3::zeros());
             let faces = FaceStiffness { young_modulus, poisson_ratio };
-            let ratio = 0.5 * (damping + self.materials[body].surface.damping_ratio);
+            let ratios = self.on_tools.iter().map(|(_, pairs)| pairs[body].surface.damping_ratio);
+            let ratio = ratios.fold(0.0, f64::max);
             let (radius, mass) = (&particles.radius, &particles.mass);
             let squares = own.map(|i| faces.frequency_square(radius[i], shift[i].norm(), mass[i], ratio));
             frequency_square = squares.fold(frequency_square, f64::max);

@@ -11,6 +11,7 @@ mod leave;
 mod node_contacts;
 mod nodes_on_shape;
 mod nodes_on_surface;
+mod pairs;
 mod rigid_body;
 mod servo;
 mod solid_surface;
@@ -23,7 +24,7 @@ use fractum_math::{HalfSteps, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
-pub use between::{ContactBody, ContactProbe, ParticleContact};
+pub use between::{ContactProbe, ParticleContact};
 use flat_faces::FlatBodies;
 pub use flat_faces::FlatFaces;
 pub(crate) use held_nodes::{HoldStep, hold_nodes};
@@ -36,6 +37,7 @@ pub use solid_surface::SolidSurface;
 
 use crate::bonded::Bonded;
 use crate::clock::Clock;
+use crate::contact_pairs::{ContactBody, ContactPairs};
 use crate::coupling::Debris;
 use crate::time_function::TimeFunction;
 use crate::watch::Site;
@@ -86,6 +88,8 @@ pub struct Contacts {
     rayleigh_frequency: f64,
     /// Faces of bonded bodies that rigid bodies feel as flat.
     flat: FlatBodies,
+    /// Largest radius of a particle [m].
+    largest_radius: f64,
     /// Forces between bodies that probes ask for [N].
     watched: Vec<(ContactProbe, f64)>,
 }
@@ -158,18 +162,12 @@ impl Contacts {
         };
         let smallest = bonded.particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
         let skin = SKIN * smallest;
-        // The reach grows with the cube root of the radius; a hollow may be felt as a larger one.
-        let largest = bonded.particles.radius.iter().copied().fold(0.0, f64::max);
-        let reach = |pairs: &[MaterialPair]| {
-            pairs.iter().map(|pair| Hertz::new(pair, 8.0 * largest, 1.0).reach).fold(0.0, f64::max)
-        };
         let on_tool = |rigid_body: &RigidBody| {
             let with = |m: &ContactMaterial| {
                 let pair = MaterialPair::new([m.elastic, rigid_body.elastic], m.surface.against(rigid_body.surface));
                 pair.sticking(adhesion(m.work_of_adhesion, rigid_body.work_of_adhesion))
             };
-            let pairs: Vec<MaterialPair> = materials.iter().map(with).collect();
-            (SurfaceContacts::new(skin).with_reach(reach(&pairs)), pairs)
+            (SurfaceContacts::new(skin), materials.iter().map(with).collect())
         };
         let is_bonded: Vec<bool> = bonded.bodies().iter().map(|body| !body.bonds.is_empty()).collect();
         let rayleigh = (0..body.len()).map(|i| {
@@ -184,12 +182,10 @@ impl Contacts {
             is_bonded.iter().any(|b| !b) || !rigid_bodies.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
         let rayleigh_frequency = if meets { rayleigh.fold(0.0, f64::max) } else { 0.0 };
         let alone = is_bonded.len() == 1 && is_bonded[0];
-        let pairs: Vec<MaterialPair> =
-            materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect();
-        Contacts {
+        let contacts = Contacts {
+            pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
             on_tools: rigid_bodies.iter().map(on_tool).collect(),
-            among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin).with_reach(reach(&pairs))),
-            pairs,
+            among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
             solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
             nodes: NodeContacts::none(rigid_bodies.len()),
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
@@ -199,8 +195,25 @@ impl Contacts {
             rigid_bodies,
             rayleigh_frequency,
             flat: FlatBodies::default(),
+            largest_radius: bonded.particles.radius.iter().copied().fold(0.0, f64::max),
             watched: Vec::new(),
-        }
+        };
+        contacts.reaching()
+    }
+
+    /// The same with searches across the gaps in which its pairs stick.
+    fn reaching(mut self) -> Self {
+        // The reach grows with the cube root of the radius; a hollow may be felt as a larger one.
+        let largest = 8.0 * self.largest_radius;
+        let reach =
+            |pairs: &[MaterialPair]| pairs.iter().map(|pair| Hertz::new(pair, largest, 1.0).reach).fold(0.0, f64::max);
+        let of_particles = reach(&self.pairs);
+        self.among = self.among.map(|among| among.with_reach(of_particles));
+        let on_tool = |(contacts, pairs): (SurfaceContacts<Hertz>, Vec<MaterialPair>)| {
+            (contacts.with_reach(reach(&pairs)), pairs)
+        };
+        self.on_tools = self.on_tools.into_iter().map(on_tool).collect();
+        self
     }
 
     /// Whether nothing can touch: no particles but those of one bonded body, and nothing else that they could meet.

@@ -134,11 +134,12 @@ impl Contacts {
     ) -> Work {
         let mut work = Work::default();
         let mut fastest = self.nodes.frequency_square;
-        for (rigid_body, nodes) in self.rigid_bodies.iter_mut().zip(&mut self.nodes.on_tools) {
+        for (index, (rigid_body, nodes)) in self.rigid_bodies.iter_mut().zip(&mut self.nodes.on_tools).enumerate() {
             let Some(nodes) = nodes else { continue };
             let surface = rigid_body.surface;
-            let law =
-                |solid: &Solid, debris: &Debris, node: u32| debris.wall_law(node, solid.mass[node as usize], surface);
+            let law = |solid: &Solid, debris: &Debris, node: u32| {
+                debris.wall_law(node, solid.mass[node as usize], Some(index), surface)
+            };
             work += nodes.add_forces(&rigid_body.ground(), solid, debris, law, dt);
             for (touch, place, node) in nodes.touches() {
                 rigid_body.push(&-touch.force, &-touch.couple, &place, solid.mass[node as usize]);

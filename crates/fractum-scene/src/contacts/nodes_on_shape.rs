@@ -103,7 +103,7 @@ impl NodesOnShape {
     /// Adds a node unless it is watched already.
     pub(crate) fn watch_node(&mut self, node: u32, solid: &Solid, debris: &Debris) {
         if let Err(place) = self.candidates.binary_search_by_key(&node, |c| c.node) {
-            let law = debris.wall_law(node, solid.mass[node as usize], self.surface);
+            let law = debris.wall_law(node, solid.mass[node as usize], self.rigid_body, self.surface);
             let candidate = Candidate {
                 node,
                 law,

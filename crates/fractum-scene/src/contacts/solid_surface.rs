@@ -101,6 +101,11 @@ impl SolidSurface {
         self
     }
 
+    /// Visits its pairs with the bodies of particles.
+    pub(super) fn each_pair(&mut self, mut visit: impl FnMut(usize, &mut MaterialPair)) {
+        self.pairs.iter_mut().enumerate().for_each(|(body, pair)| visit(body, pair));
+    }
+
     /// Body of the solid.
     pub fn body(&self) -> usize {
         self.body
@@ -123,8 +128,9 @@ impl SolidSurface {
         &self.elastic
     }
 
-    pub(super) fn contact_parameters(&self) -> ContactParameters {
-        self.surface
+    /// Its body, with friction and damping of its surface.
+    pub(super) fn body_and_surface(&self) -> (usize, ContactParameters) {
+        (self.body, self.surface)
     }
 
     /// Whether the nodes of a solid body may touch it.
@@ -233,11 +239,11 @@ impl SolidSurface {
 
     /// Adds the forces of nodes of other solids to both.
     pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
-        let SolidSurface { mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
+        let SolidSurface { body, mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
         let Some(visitors) = visitors else { return Work::default() };
         let ground = Surface::Deformable { surface: mesh, points, velocity };
         let law = |solid: &Solid, debris: &Debris, node: u32| {
-            debris.facet_law(node, solid.mass[node as usize], elastic, *surface)
+            debris.facet_law(node, solid.mass[node as usize], elastic, (*body, *surface))
         };
         let work = visitors.add_forces(&ground, solid, debris, law, dt);
         let mut fastest: f64 = 0.0;

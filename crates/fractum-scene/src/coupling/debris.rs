@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::holder::{Holder, Holders};
 use super::radius::largest_radii;
+use crate::contact_pairs::{ContactBody, ContactPairs};
 pub(crate) use near::Apart;
 use near::Near;
 
@@ -30,6 +31,8 @@ const NONE: u32 = u32::MAX;
 pub struct Debris {
     /// Contact parameters of each body.
     surfaces: Vec<ContactParameters>,
+    /// Pairs of bodies with parameters of their own.
+    pairs: ContactPairs,
     /// Body of each node.
     body: Vec<u32>,
     /// All bodies are plane: particles are discs.
@@ -110,6 +113,7 @@ impl Debris {
         assert_eq!(surfaces.len(), bodies.len(), "one surface per body");
         Debris {
             surfaces,
+            pairs: ContactPairs::default(),
             body: Vec::new(),
             planar: bodies.clone().all(|b| solid.body(b).shape == fractum_fem::ElementKind::T3),
             elasticity: Vec::new(),
@@ -125,6 +129,11 @@ impl Debris {
             apart: Apart::default(),
             rates: Vec::new(),
         }
+    }
+
+    /// The same with pairs of bodies that have contact parameters of their own.
+    pub fn with_pairs(self, pairs: ContactPairs) -> Self {
+        Debris { pairs, ..self }
     }
 
     /// Finds radii, bodies and materials of the nodes; needed before the first contact of any kind, and before anyone asks for them.
@@ -183,15 +192,25 @@ impl Debris {
     }
 
     /// Contact parameters of the body of a node.
-    pub(crate) fn surface(&self, node: u32) -> ContactParameters {
-        self.surfaces[self.body[node as usize] as usize]
+    fn surface(&self, node: u32) -> ContactParameters {
+        self.surfaces[self.body(node)]
+    }
+
+    /// Contact parameters of the body of a node with another body, which has the `surface`.
+    pub(crate) fn surface_with(&self, node: u32, other: ContactBody, surface: ContactParameters) -> ContactParameters {
+        self.pairs.surface([other, ContactBody::Solid(self.body(node))], [surface, self.surface(node)])
     }
 
     /// The law of a node on a rigid wall.
-    pub(crate) fn wall_law(&self, node: u32, mass: f64, wall: ContactParameters) -> Linear {
+    ///
+    /// - `rigid_body`: the one that the wall is part of; `wall`: its surface
+    pub(crate) fn wall_law(&self, node: u32, mass: f64, rigid_body: Option<usize>, wall: ContactParameters) -> Linear {
         let i = node as usize;
         let ((e, nu), radius, thickness) = (self.elasticity[i], self.radius[i], self.thickness[i]);
-        let surface = wall.against(self.surface(node));
+        let surface = match rigid_body {
+            Some(index) => self.surface_with(node, ContactBody::Rigid(index), wall),
+            None => wall.against(self.surface(node)),
+        };
         if thickness > 0.0 {
             Linear::disc_on_wall(e, nu, radius, thickness, mass, surface)
         } else {
@@ -211,15 +230,18 @@ impl Debris {
     }
 
     /// The law of a node of a solid in space on a facet of another body.
+    ///
+    /// - `body`, `surface`: the other body
     pub(crate) fn facet_law(
         &self,
         node: u32,
         mass: f64,
         other: &ElasticMaterial,
-        surface: ContactParameters,
+        (body, surface): (usize, ContactParameters),
     ) -> Linear {
         let (e, nu) = self.mean_elasticity(node, other);
-        Linear::on_wall(e, nu, self.radius(node), mass, surface.against(self.surface(node)))
+        let surface = self.surface_with(node, ContactBody::Solid(body), surface);
+        Linear::on_wall(e, nu, self.radius(node), mass, surface)
     }
 
     /// Finds the elements that hold the nodes; needed before a node that is no particle yet touches facets.
@@ -450,6 +472,6 @@ impl Debris {
 
     /// Largest damping ratio of the contacts.
     pub(crate) fn damping_ratio(&self) -> f64 {
-        self.surfaces.iter().map(|s| s.damping_ratio).fold(0.0, f64::max)
+        self.surfaces.iter().map(|s| s.damping_ratio).fold(self.pairs.damping_ratio(), f64::max)
     }
 }

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::{Debris, DebrisState};
+use crate::contact_pairs::ContactBody;
 
 /// Gap over the distance of the centres below which a pair is about to touch.
 const NEAR: f64 = 0.05;
@@ -53,7 +54,7 @@ impl Debris {
         let (e, nu) = (2.0 * e1 * e2 / (e1 + e2), 0.5 * (nu1 + nu2));
         let (radii, masses) = ([self.radius[i], self.radius[j]], [solid.mass[i], solid.mass[j]]);
         let thickness = self.thickness[i].min(self.thickness[j]);
-        let surface = self.surface(nodes[0]).against(self.surface(nodes[1]));
+        let surface = self.surface_with(nodes[1], ContactBody::Solid(self.body(nodes[0])), self.surface(nodes[0]));
         if thickness > 0.0 {
             Linear::between_discs(e, nu, radii, thickness, masses, surface)
         } else {
