@@ -299,7 +299,7 @@ rolling_friction = 0
 
 #[test]
 fn the_order_of_names_and_pairs_and_those_that_say_nothing_new_change_no_bit() {
-    let one = Beads { tangent: 0.4, end: "10 ms", ..Beads::SLIDING };
+    let one = Beads { tangent: 0.4, ..Beads::SLIDING };
     let place = one.place();
     let first = run(&place, "one", "1");
     let two = run(&place, "two", "2");
