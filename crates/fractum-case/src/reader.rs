@@ -400,7 +400,10 @@ impl<'a> Table<'a> {
             let value = self.reader.quantity(node, self.dimension(name))?;
             if matches!(self.kind(name), Some(KeyKind::Angle)) && value.abs() > TAU {
                 let note = Diagnostic::error(&node.place, node.found()).expected(KeyKind::Angle.expected());
-                self.reader.note(note.remedy(format!("without a unit it is in radians: write \"{value} deg\"")));
+                self.reader.note(match node.bare_number() {
+                    Some(bare) => note.remedy(format!("without a unit it is in radians: write \"{bare} deg\"")),
+                    None => note.remedy("write an angle within one turn"),
+                });
                 return None;
             }
             Some(value)

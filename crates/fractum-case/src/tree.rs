@@ -47,6 +47,15 @@ impl Node {
         }
     }
 
+    /// A number without a unit.
+    pub(super) fn bare_number(&self) -> Option<f64> {
+        match &self.value {
+            Value::Number(number) => Some(*number),
+            Value::Text(text) => text.trim().parse().ok(),
+            _ => None,
+        }
+    }
+
     /// The place `offset` bytes into a string value, where its text stands in the file as it is.
     pub(super) fn place_inside(&self, offset: usize) -> Place {
         let mut place = self.place.clone();

@@ -10,7 +10,6 @@ use crate::reader::Table;
 use crate::reader::presence::{exactly_one, optional};
 use crate::reader::vectors::field;
 use crate::selection::selection;
-use crate::tree::Value;
 use crate::usual::HEAT_CAPACITY;
 use crate::{Diagnostic, Spanned};
 
@@ -34,12 +33,7 @@ const CELSIUS: std::ops::Range<f64> = -273.15..200.0;
 /// Warns of a temperature without a unit that was probably meant in degrees Celsius.
 fn doubt_kelvin(table: &Table<'_>, name: &str) {
     let Some(node) = table.node_below(name) else { return };
-    let number = match &node.value {
-        Value::Number(number) => Some(*number),
-        Value::Text(text) => text.trim().parse().ok(),
-        _ => None,
-    };
-    let Some(number) = number.filter(|number| CELSIUS.contains(number)) else { return };
+    let Some(number) = node.bare_number().filter(|number| CELSIUS.contains(number)) else { return };
     let note = Diagnostic::warning(Code::UnusualValue, &node.place, format!("{}, which is in kelvin", node.found()));
     let [celsius, kelvin] = [number + 273.15, number].map(|kelvin| {
         let mut text = String::new();

@@ -80,7 +80,7 @@ fn each_mistake_about_beds_has_one_clear_message() {
         (
             "normal = [0, 0, 2]",
             "dip = 30, dip_direction = 0",
-            "8:19: materials.steel.bedding.dip = 30; expected from 0 to 90 deg (a number without a unit is in radians)",
+            "8:19: materials.steel.bedding.dip = 30; expected an angle such as \"35 deg\"; without a unit it is in radians: write \"30 deg\"",
         ),
         (
             "_normal = 0.2 }",
