@@ -134,11 +134,12 @@ fn last(summary: &Value, probe: &str) -> f64 {
     summary["probes"][probe]["final"].as_f64().unwrap()
 }
 
-/// Whether a bead stays on an incline, or slides down it with the acceleration that friction leaves.
+/// Whether a bead stays on an incline, but for a vibration, or slides down it with the acceleration that friction leaves.
 fn slides_as(found: f64, tangent: f64, friction: f64, told: &str) {
     let right = 9.81 * (tangent - friction) / (1.0 + tangent * tangent).sqrt();
     let error = (found - right.max(0.0)).abs();
-    assert!(error < 1e-5 * 9.81, "{told}: tan {tangent}: {found} m/s2 for {right}");
+    let least = if right > 0.0 { 1e-5 } else { 2e-4 };
+    assert!(error < least * 9.81, "{told}: tan {tangent}: {found} m/s2 for {right}");
 }
 
 #[test]
@@ -260,7 +261,7 @@ fn a_bead_rebounds_from_a_floor_by_the_restitution_of_the_pair() {
         };
         for safety in [0.8, 0.4] {
             let found = last(&Beads { safety, ..thrown.clone() }.run(), "up_a") / 0.1;
-            assert!((found - restitution).abs() < 2e-3, "{restitution}, safety {safety}: {found}");
+            assert!((found - restitution).abs() < 3e-3, "{restitution}, safety {safety}: {found}");
         }
     }
 }
@@ -337,9 +338,9 @@ fn what_a_rigid_body_says_itself_counts_before_the_pair_of_its_material() {
     let told = beads.place().fractum(&["check", "case.toml"]);
     assert!(told.stdout.contains("glass and steel: friction 0.3; as the materials have it: "), "{}", told.stdout);
     assert!(told.stdout.contains("but floor has its own friction"), "{}", told.stdout);
-    assert!(told.stderr.contains("its friction has no effect: the rigid bodies say their own"), "{}", told.stderr);
+    assert!(told.stdout.contains("its friction has no effect: the rigid bodies say their own"), "{}", told.stdout);
     // The rolling friction of the pair acts all the same.
-    assert!(!told.stderr.contains("its rolling_friction has no effect"), "{}", told.stderr);
+    assert!(!told.stdout.contains("its rolling_friction has no effect"), "{}", told.stdout);
 }
 
 #[test]
@@ -374,7 +375,7 @@ poisson_ratio = 0.3
     let told = Beads { pairs: vain, ..Beads::SLIDING }.place().fractum(&["check", "case.toml"]);
     assert_eq!(told.code, Some(0), "{}", told.stderr);
     let steel = "contact_pairs[0]: steel and steel never touch: rigid bodies do not touch each other";
-    assert!(told.stderr.contains(steel), "{}", told.stderr);
+    assert!(told.stdout.contains(steel), "{}", told.stdout);
     let granite = "contact_pairs[1]: glass and granite never touch: no body is made of granite";
-    assert!(told.stderr.contains(granite), "{}", told.stderr);
+    assert!(told.stdout.contains(granite), "{}", told.stdout);
 }
