@@ -136,7 +136,8 @@ pub(super) fn moved_as_a_whole(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Opti
         let function = support.motion[axis].as_ref().map(|motion| &motion.value);
         let Some(Motion::Displacement(function) | Motion::Velocity(function)) = function else { return true };
         let holding = case.supports.iter().filter(|other| other.motion[axis].is_some()).count();
-        holding == 1 && !function.depends_on_position() && !function.is_zero() && !(lies_around && axis == 0)
+        let is_pinned = function.depends_on_position() || function.is_zero() || lies_around && axis == 0;
+        holding == 1 && !is_pinned
     };
     if !(0..3).all(is_free) {
         return None;
