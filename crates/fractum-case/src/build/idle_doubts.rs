@@ -91,7 +91,8 @@ pub(super) fn all_prescribed(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option
         }
     }
     let all = (1 << axes) - 1;
-    if bodies.iter().flat_map(|body| &body.nodes).any(|&node| held[node as usize] != all) {
+    let mut nodes = bodies.iter().flat_map(|body| &body.nodes).peekable();
+    if nodes.peek().is_none() || nodes.any(|&node| held[node as usize] != all) {
         return None;
     }
     let whole =
