@@ -134,19 +134,19 @@ fn last(summary: &Value, probe: &str) -> f64 {
     summary["probes"][probe]["final"].as_f64().unwrap()
 }
 
-/// Whether a bead stays on an incline, but for a vibration, or slides down it with the acceleration that friction leaves.
+/// Whether a bead stays on an incline, or slides down it with the acceleration that friction leaves.
 fn slides_as(found: f64, tangent: f64, friction: f64, told: &str) {
     let right = 9.81 * (tangent - friction) / (1.0 + tangent * tangent).sqrt();
     let error = (found - right.max(0.0)).abs();
-    let least = if right > 0.0 { 1e-5 } else { 2e-4 };
-    assert!(error < least * 9.81, "{told}: tan {tangent}: {found} m/s2 for {right}");
+    assert!(error < 1e-5 * 9.81, "{told}: tan {tangent}: {found} m/s2 for {right}");
 }
 
 #[test]
 fn beads_slide_on_an_incline_each_at_the_angle_of_its_pair() {
     for tangent in [0.298, 0.302, 0.497, 0.503] {
         for safety in [0.8, 0.4] {
-            let both = Beads { tangent, safety, ..Beads::SLIDING }.run();
+            // Until the vibrations of what holds have died.
+            let both = Beads { tangent, safety, end: "80 ms", ..Beads::SLIDING }.run();
             slides_as(last(&both, "a"), tangent, 0.3, "glass");
             slides_as(last(&both, "b"), tangent, 0.5, "wood");
         }
@@ -259,9 +259,10 @@ fn a_bead_rebounds_from_a_floor_by_the_restitution_of_the_pair() {
             at: [[0.0, 0.0, 1.01], [0.0, 10.0, 3.0]],
             ..Beads::SLIDING
         };
-        for safety in [0.8, 0.4] {
+        // The error falls with the step.
+        for safety in [0.4, 0.2] {
             let found = last(&Beads { safety, ..thrown.clone() }.run(), "up_a") / 0.1;
-            assert!((found - restitution).abs() < 3e-3, "{restitution}, safety {safety}: {found}");
+            assert!((found - restitution).abs() < 5e-3 * safety, "{restitution}, safety {safety}: {found}");
         }
     }
 }
