@@ -92,7 +92,8 @@ impl StaticSolver {
             let leads = self.lead.at;
             let Some(found) = self.step_of_load(scene, points, longest, growth, by_damage) else { return Ok(None) };
             if first && leads.is_some() && self.lead.at.is_none() && !points.is_empty() {
-                // Where the load leads it does so from the start: the point was held where it would not have come to. Between elastic bodies it stays where their load snaps back.
+                // Where the load leads it does so from the start: the point was held where it would not have come to. Between elastic bodies it stays: there
+                // the load may snap back as soon as the point goes on.
                 iteration = 0;
                 continue;
             }
@@ -112,9 +113,10 @@ impl StaticSolver {
                 }
                 // Elastic bodies have gone to the least energy of their way before.
                 let most = if points.is_empty() { 1 } else { MOST_HALVES };
-                let mut halves = if since == 0.0 { most } else { 0 };
-                while halves > 0 && found[0] > out_of_balance {
-                    halves -= 1;
+                for _ in 0..most {
+                    if since != 0.0 || found[0] <= out_of_balance {
+                        break;
+                    }
                     for (place, from) in self.response.start.iter_mut().zip(&from) {
                         *place = 0.5 * (*place + from);
                     }
