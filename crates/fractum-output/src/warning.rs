@@ -77,6 +77,8 @@ codes! {
     Reflections = "reflections",
     /// A tool that meets nothing.
     Misses = "misses",
+    /// A probe without a value.
+    Undefined = "undefined",
     /// A reaction that is not that of one support.
     Reaction = "reaction",
     /// A Poisson's ratio at which elements lock.

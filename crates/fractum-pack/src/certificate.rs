@@ -134,7 +134,7 @@ impl Certificate {
         }
     }
 
-    /// Refuses a packing that is looser, more overlapped or less isotropic than a random close packing. Walls order some
+    /// Refuses a packing that is looser, more overlapped or more ordered than a random close packing. Walls order some
     /// five diameters next to them; what has a core, but none deeper than that, is not judged by its directions.
     ///
     /// # Errors
@@ -153,12 +153,21 @@ impl Certificate {
             let reached = format!("{:.2e}", self.overlap.mean);
             return refuse("mean overlap below 0.5 % of the mean radius", reached, "ask for a lower coordination");
         }
-        if !WALLS_REACH.contains(&self.depth) && !self.isotropy.isotropic() {
+        if self.judges_directions() && self.isotropy.ordered() {
             let reached = format!("{:.3} against {:.3}", self.isotropy.deviation, self.isotropy.shot_noise);
             let remedy = "try another seed, or a dispersion of 0.25 and more (ordered packings form below 0.15)";
-            return refuse("contact directions within 20 % of shot noise", reached, remedy);
+            return refuse("contact directions without order", reached, remedy);
         }
         Ok(())
+    }
+
+    /// Whether no other seed need be tried.
+    pub(crate) fn is_good(&self) -> bool {
+        self.check().is_ok() && (!self.judges_directions() || self.isotropy.isotropic())
+    }
+
+    fn judges_directions(&self) -> bool {
+        !WALLS_REACH.contains(&self.depth)
     }
 }
 

@@ -19,10 +19,25 @@ pub struct Isotropy {
     pub histogram: Vec<u32>,
 }
 
+/// Deviation beyond shot noise of directions that are ordered. A share c of contacts along the 12 directions of a dense crystal adds
+/// c √(320/12), or 5 c.
+const ORDERED: f64 = 0.15;
+
 impl Isotropy {
     /// Whether the deviation is within 20 % of that of random directions.
     pub fn isotropic(&self) -> bool {
         self.deviation <= 1.2 * self.shot_noise
+    }
+
+    /// Whether directions deviate by what order brings. Walls make those of large packings uneven by more than their shot noise, which
+    /// falls with the number of contacts, and by less than this.
+    pub fn ordered(&self) -> bool {
+        !self.isotropic() && self.excess() > ORDERED
+    }
+
+    /// Deviation beyond shot noise.
+    fn excess(&self) -> f64 {
+        (self.deviation.powi(2) - self.shot_noise.powi(2)).max(0.0).sqrt()
     }
 
     /// Counts directions; each falls on its face and on the opposite one.
@@ -157,7 +172,12 @@ mod tests {
 
     #[test]
     fn a_preferred_direction_is_seen() {
-        let squashed = random_directions(20_000, 3).into_iter().map(|d| Vec3::new(d.x, d.y, 0.8 * d.z).normalize());
-        assert!(!Isotropy::of(squashed).isotropic());
+        for (share, isotropic, ordered) in [(0.0, true, false), (0.015, false, false), (0.05, false, true)] {
+            let crystal = |at: usize| [Vec3::x(), Vec3::y(), Vec3::z()][at % 3];
+            let count = (20_000.0 * share) as usize;
+            let directions = random_directions(20_000, 3).into_iter().chain((0..count).map(crystal));
+            let isotropy = Isotropy::of(directions);
+            assert_eq!((isotropy.isotropic(), isotropy.ordered()), (isotropic, ordered), "{isotropy:?}");
+        }
     }
 }

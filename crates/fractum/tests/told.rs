@@ -352,3 +352,33 @@ fn a_body_that_turns_is_corotational_by_itself() {
         assert!(stretch > 0.05 && !turns && told, "{stretch}");
     }
 }
+
+#[test]
+fn expressions_of_probes_without_a_value_are_told() {
+    let probes = r#"[[probes]]
+name = "held"
+displacement = { group = "x-", along = "x" }
+[[probes]]
+name = "pulled"
+reaction = { group = "x-", along = "-x" }
+[[probes]]
+name = "none"
+expression = "final(held)/max(held)"
+unit = "1"
+[[probes]]
+name = "endless"
+expression = "pulled/held"
+unit = "N/m"
+[[probes]]
+name = "after"
+expression = "2*none"
+unit = "1"
+[solver]"#;
+    let place = Workplace::new(&BAR.replace("PLANE", "xyz").replacen("[solver]", probes, 1));
+    fs::write(place.path("bar.msh"), mesh_bytes(&bar(), MshFormat::V4_1Binary)).unwrap();
+    run(&place, "out", "1");
+    let all = listed(&place, "out");
+    let told: Vec<&str> =
+        all.iter().filter(|[code, ..]| code == "undefined").map(|[_, place, _]| place.as_str()).collect();
+    assert_eq!(told, ["probe \"none\"", "probe \"endless\""], "{all:?}");
+}

@@ -180,7 +180,8 @@ impl<'t> Compiler<'t, '_> {
 
     fn name(&mut self, name: &str, offset: usize) -> Result<Type> {
         let called = self.peek().kind == Kind::Symbol("(");
-        if called && !self.names.contains(name) {
+        // A parameter may have the name of a reduction, which is called.
+        if called && (!self.names.contains(name) || self.names.reduces(name)) {
             return self.call(name, offset);
         }
         let found = match name {

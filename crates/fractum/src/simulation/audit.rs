@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use fractum_case::model::{BodyKind, ProbeKind};
+use fractum_case::model::{BodyKind, Probe, ProbeInput, ProbeKind};
 use fractum_fem::{RateReport, cracks, motion, neighbours, rate_report};
 use fractum_math::Vec3;
 use fractum_output::number::{at_instant, percent, quantity};
@@ -12,6 +12,7 @@ use fractum_scene::{Notice, Noticed, Scene, Site};
 
 use super::{End, Simulation};
 use crate::error::Failure;
+use crate::output::summary::probes;
 
 /// Steps of motion between two looks at the state, of a short run and of a long one: a look costs about two steps.
 const STEPS_BETWEEN_LOOKS: [f64; 2] = [128.0, 256.0];
@@ -101,6 +102,7 @@ impl Simulation {
         if matches!(end, End::Finished(_)) {
             self.warn_of_servos()?;
             self.warn_of_idle_probes()?;
+            self.warn_of_undefined_probes()?;
         }
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
@@ -323,6 +325,31 @@ impl Simulation {
             return Ok(());
         };
         self.warn(found)
+    }
+
+    /// Warns of expressions of probes that were infinite, or had no value at any instant, though all that they take had good ones.
+    fn warn_of_undefined_probes(&mut self) -> Result<(), Failure> {
+        let summaries = probes(&self.case, &self.recorder);
+        let is_good =
+            |probe: &Probe| summaries.get(&probe.name.value).is_none_or(|of| of.min.is_finite() && of.max.is_finite());
+        let undefined = self.case.probes.iter().filter(|probe| match &probe.kind {
+            ProbeKind::Expression(expression) if !is_good(probe) => expression.inputs.iter().all(|input| match input {
+                ProbeInput::Probe { probe, .. } => is_good(&self.case.probes[*probe]),
+                ProbeInput::Time => true,
+            }),
+            _ => false,
+        });
+        let found = undefined.map(|probe| {
+            let name = &probe.name.value;
+            let text = match summaries[name].max.is_nan() {
+                true => "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants",
+                false => "it is infinite at an instant: something is divided by zero",
+            };
+            let found = Warning::new(Code::Undefined, format!("probe \"{name}\""), text);
+            found.remedy("look at the values that its expression takes (history.csv)")
+        });
+        let found: Vec<Warning> = found.collect();
+        found.into_iter().try_for_each(|found| self.warn(found))
     }
 
     /// Warns of the first of a kind.
