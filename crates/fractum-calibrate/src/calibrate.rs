@@ -22,6 +22,8 @@ pub struct Request {
     pub coordination: Option<f64>,
     /// How the coordination is counted.
     pub convention: Convention,
+    /// See [`Sample::stiffen_walls`].
+    pub wall_stiffening: f64,
     /// Particles of the calibration packings (boxes).
     pub particles: usize,
     /// Seed of the first packing; further ones follow it.
@@ -39,6 +41,7 @@ impl Request {
             tensile_strength: None,
             coordination: None,
             convention: Convention::Interior,
+            wall_stiffening: 0.0,
             particles: 10_000,
             seed: 1,
             packings: 1,
@@ -114,7 +117,7 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
     let start = proposed.map_or(0.4, |m| m.radius_ratio);
     let cube = |seed: u64| -> Result<Sample, CalibrateError> {
         let packing = pack(&PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), request.particles, seed))?;
-        Sample::new(packing, coordination, request.convention)
+        Sample::new(packing, coordination, request.convention)?.stiffen_walls(request.wall_stiffening)
     };
     let mut inverted = Vec::new();
     let mut first = None;

@@ -19,6 +19,8 @@ pub struct BondedMaterial {
     pub coordination: f64,
     /// How it is counted.
     pub convention: Convention,
+    /// See [`Sample::stiffen_walls`].
+    pub wall_stiffening: f64,
     /// Beams, when they are known; found by calibration otherwise.
     pub beams: Option<Beams>,
 }
@@ -74,12 +76,13 @@ pub fn prepare(packing: Packing, material: &BondedMaterial) -> Result<BondedBody
 ///
 /// # Errors
 /// Those of calibration; a density that is not positive.
-pub fn prepare_sample(mut sample: Sample, material: &BondedMaterial) -> Result<BondedBody, CalibrateError> {
+pub fn prepare_sample(sample: Sample, material: &BondedMaterial) -> Result<BondedBody, CalibrateError> {
     let (young, poisson) = (material.young_modulus, material.poisson_ratio);
     if !(material.density.is_finite() && material.density > 0.0) {
         let expected = "a positive number of kilograms per cubic metre";
         return Err(CalibrateError::Material { what: "density", value: material.density, expected });
     }
+    let mut sample = sample.stiffen_walls(material.wall_stiffening)?;
     let has_faces = sample.box_extents().is_some() || sample.cylinder_extents().is_some();
     let beams = match material.beams {
         Some(beams) => beams,
@@ -90,7 +93,12 @@ pub fn prepare_sample(mut sample: Sample, material: &BondedMaterial) -> Result<B
         }
         None => {
             let (coordination, convention) = (Some(material.coordination), material.convention);
-            let found = calibrate(&Request { coordination, convention, ..Request::new(young, poisson) })?;
+            let found = calibrate(&Request {
+                coordination,
+                convention,
+                wall_stiffening: material.wall_stiffening,
+                ..Request::new(young, poisson)
+            })?;
             Beams::calibrated(&found.inverted[0], false)
         }
     };
@@ -115,6 +123,7 @@ mod tests {
             density: 2500.0,
             coordination: 9.0,
             convention,
+            wall_stiffening: 0.0,
             beams: None,
         }
     }

@@ -13,6 +13,8 @@ pub struct Sample {
     pub network: BondNetwork,
     /// The convention that counted them.
     pub convention: Convention,
+    /// Factors on the stiffness of the bonds; none where all are 1.
+    pub shares: Vec<f64>,
     /// The lattice of the bonds.
     pub lattice: Lattice,
     /// Mean radius [m].
@@ -52,7 +54,29 @@ impl Sample {
         let section = BeamSection::new(1.0, 0.5 * mean_radius).map_err(DemError::from)?;
         let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;
         let fraction = interior_fraction(&packing).unwrap_or(RANDOM_CLOSE);
-        Ok(Sample { packing, network, convention, lattice, mean_radius, fraction })
+        Ok(Sample { packing, network, convention, shares: Vec::new(), lattice, mean_radius, fraction })
+    }
+
+    /// Makes bonds stiffer by a share for each of their particles that touches a wall. Bonds end at the centres of the outer particles,
+    /// half a particle inside the body that they stand for: its rim would bear nothing.
+    ///
+    /// # Errors
+    /// A share that is no number from 0 on.
+    pub fn stiffen_walls(mut self, by: f64) -> Result<Self, CalibrateError> {
+        if !(by.is_finite() && by >= 0.0) {
+            let expected = "a number from 0 on";
+            return Err(CalibrateError::Material { what: "stiffening of wall bonds", value: by, expected });
+        }
+        if by > 0.0 {
+            let Sample { packing, network, lattice, shares, mean_radius, .. } = &mut self;
+            let mut share = vec![0.0; packing.len()];
+            packing.walls.iter().flat_map(|(_, set)| set).for_each(|&i| share[i as usize] = by);
+            let own = |pair: &[u32; 2]| 1.0 + share[pair[0] as usize] + share[pair[1] as usize];
+            *shares = network.pairs.iter().map(own).collect();
+            *lattice =
+                Lattice::with_shares(&packing.position, &network.pairs, shares, lattice.section(), *mean_radius)?;
+        }
+        Ok(self)
     }
 
     /// Sets the beams of all bonds.

@@ -70,13 +70,16 @@ pub struct BondKind {
     pub convention: Convention,
     /// κ of the radii.
     pub dispersion: f64,
+    /// See [`Sample::stiffen_walls`].
+    pub wall_stiffening: f64,
 }
 
 impl BondKind {
     /// A packing with such bonds; its radii have their dispersion.
     pub(crate) fn sample(&self, spec: PackSpec) -> Result<Sample, CalibrateError> {
         let packing = pack(&PackSpec { dispersion: self.dispersion, ..spec })?;
-        let mut sample = Sample::new(packing, self.coordination, self.convention)?;
+        let sample = Sample::new(packing, self.coordination, self.convention)?;
+        let mut sample = sample.stiffen_walls(self.wall_stiffening)?;
         sample.set_micro(self.micro)?;
         Ok(sample)
     }

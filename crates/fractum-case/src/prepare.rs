@@ -116,6 +116,7 @@ fn bonded_request<'a>(
         law: bonded.law,
         coordination: bonded.coordination.as_ref().map(|asked| asked.value),
         convention: bonded.convention,
+        wall_stiffening: bonded.wall_stiffening,
         material: BondedSubstance {
             density: material.density,
             young_modulus: material.young_modulus,

@@ -20,6 +20,8 @@ pub struct BondedRequest<'a> {
     pub coordination: Option<f64>,
     /// How the coordination is counted.
     pub convention: Convention,
+    /// See [`fractum_calibrate::Sample::stiffen_walls`].
+    pub wall_stiffening: f64,
     /// What it is made of.
     pub material: BondedSubstance,
     /// Whether it is broken at rest.

@@ -66,6 +66,8 @@ pub struct BondedReport {
     pub coordination_interior: f64,
     /// The convention that was asked.
     pub convention: Convention,
+    /// See [`Sample::stiffen_walls`].
+    pub wall_stiffening: f64,
     /// What its bonds are.
     pub joints: Joints,
     /// Names and sizes of the wall sets.
@@ -129,6 +131,7 @@ struct BeamsKey {
     packing: u128,
     coordination: f64,
     convention: Convention,
+    wall_stiffening: f64,
     young_modulus: f64,
     poisson_ratio: f64,
     /// Bonds that are given.
@@ -194,7 +197,7 @@ impl Maker<'_> {
             fraction,
             fracture: fracture.map(breaks),
             law: made.sample.lattice.section().into(),
-            shares: Vec::new(),
+            shares: made.sample.shares,
             particles: made.particles,
             pairs: made.sample.network.pairs,
             shift_to_walls: made.sample.packing.shift_to_walls(),
@@ -246,6 +249,7 @@ impl Maker<'_> {
             packing: xxhash_rust::xxh3::xxh3_128(&packing.to_bytes()),
             coordination,
             convention,
+            wall_stiffening: self.asked.wall_stiffening,
             young_modulus: material.young_modulus,
             poisson_ratio: material.poisson_ratio,
             pairs: network.as_ref().map(|network| network.pairs.clone()),
@@ -263,6 +267,7 @@ impl Maker<'_> {
             density: material.density,
             coordination,
             convention,
+            wall_stiffening: self.asked.wall_stiffening,
             beams,
         };
         if from == Origin::Made {
@@ -295,6 +300,7 @@ impl Maker<'_> {
             coordination_all: network.coordination_all,
             coordination_interior: network.coordination_interior,
             convention: self.asked.convention,
+            wall_stiffening: self.asked.wall_stiffening,
             joints,
             walls: sample.packing.walls.iter().map(|(name, set)| (name.clone(), set.len())).collect(),
             fracture: None,

@@ -148,11 +148,69 @@ young_modulus = "500 GPa"
 }
 
 #[test]
+fn stiffer_wall_bonds_bear_their_rim() {
+    let stiffened = BAR.replace("coordination = 8", "coordination = 8\nwall_stiffening = 0.25");
+    let place = Workplace::new(&stiffened);
+    let summary = run(&place, "one", "1");
+    assert!(log(&place, "one").contains("stiffer by 0.25 for each of their particles at a wall"));
+    assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-5, "{}", summary["energy"]);
+    assert_eq!(run(&place, "2", "2")["state_hash"], summary["state_hash"]);
+    assert_eq!(resumed(&place, "2")["state_hash"], summary["state_hash"]);
+    // What is calibrated is what is pulled at rest: both bodies have their material's modulus.
+    let text = &stiffened[stiffened.find("[[loads]]").unwrap()..stiffened.find("[[probes]]").unwrap()];
+    let still = stiffened.replace(text, "[solver]\nkind = \"static\"\nend = \"1 us\"\n");
+    let still = still.replace("initial_velocity = { y = \"0.01 mm/s*(x - 1 mm)/3 mm\" }\n", "");
+    let still = still.replace("fix_rotation = \"xyz\"\n", "");
+    let (x, ramp) = (
+        "velocity = { x = { smooth_ramp = [[\"0 s\", \"0 m/s\"], [\"1 us\", \"0.1 mm/s\"]] } }",
+        "displacement = { x = \"1 um*t/1 us\" }",
+    );
+    let still = still.replace("group = \"bar.x-\"\nfix = \"xyz\"", "group = \"bar.x-\"\nfix = \"x\"").replace(x, ramp);
+    let still = still.replace(
+        "[[supports]]\ngroup = \"bar.x+\"",
+        "[[supports]]\ngroup = \"bar.middle\"\nfix = \"yz\"\n[[supports]]\ngroup = \"bar.x+\"",
+    );
+    let pull = |case: &str| {
+        let place = Workplace::new(case);
+        run(&place, "still", "2")["probes"]["pull"]["final"].as_f64().unwrap()
+    };
+    let [plain, stiffened] = [&still.replace("wall_stiffening = 0.25\n", ""), &still].map(|case| pull(case));
+    assert!((stiffened / plain - 1.0).abs() < 0.01, "{stiffened} {plain}");
+    // Tension and torsion agree on the radius of a rod.
+    let modulus = |test: &str, name: &str, by: &str| {
+        let ended = place.fractum(&[
+            "lab",
+            "test",
+            test,
+            "--cylinder",
+            "5 mm,0.5 mm",
+            "--count",
+            "2500",
+            "--coordination",
+            "8",
+            "--wall-stiffening",
+            by,
+        ]);
+        let value: serde_json::Value =
+            serde_json::from_str(&ended.stdout).unwrap_or_else(|error| panic!("{error}: {}", ended.stderr));
+        value[name].as_f64().unwrap()
+    };
+    let error = |by: &str| {
+        let shear = modulus("tension", "young_modulus", by) / (2.0 * (1.0 + modulus("tension", "poisson_ratio", by)));
+        modulus("torsion", "shear_modulus", by) / shear - 1.0
+    };
+    let [soft, stiff] = ["0", "0.25"].map(error);
+    assert!(soft < -0.05 && stiff.abs() < 0.4 * soft.abs(), "{soft} {stiff}");
+}
+
+#[test]
 fn what_cannot_be_packed_bonded_or_calibrated_is_refused_with_a_remedy() {
     let small = BAR.replace("particles = 1500", "particles = 300");
     let cases = [
         // what is replaced, by what, key, words
         ("particles = 300", "particles = 40", "bodies[0].particles", "ask for more and smaller particles"),
+        ("coordination = 8", "wall_stiffening = -0.2", "bodies[0].wall_stiffening", "at least 0"),
+        ("coordination = 8", "bond = \"local\"\nwall_stiffening = 0.2", "bodies[0].wall_stiffening", "cohesive-beam"),
         ("coordination = 8", "coordination = 35", "bodies[0].coordination", "is out of reach: this packing gives"),
         ("poisson_ratio = 0.23", "poisson_ratio = 0.48", "bodies[0].coordination", "lower coordinations reach higher"),
         (

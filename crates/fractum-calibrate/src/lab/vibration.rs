@@ -69,7 +69,7 @@ fn body(sample: &Sample, density: f64, test: &'static str) -> Result<Body, Calib
     };
     let mass = density * PI * radius * radius * length;
     let particles = Particles::at_rest(sample.packing.position.clone(), sample.packing.radius.clone(), mass)?;
-    let bonds = Bonds::new(&particles, &sample.network.pairs, sample.lattice.section())?;
+    let bonds = Bonds::with_shares(&particles, &sample.network.pairs, &sample.shares, sample.lattice.section())?;
     let dt = bonds.stable_step(&particles, SAFETY);
     let motion = CentralDifference::new(&particles, dt, ParticleDamping::default());
     Ok(Body { particles, bonds, motion, length, radius, axis: *start })

@@ -192,6 +192,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].bond_gap", K::Quantity(D::LENGTH), "", "Bonded, with a file of particles: joins those whose gap is below it, > 0, instead of the bonds of the file or of a coordination"),
     key("bodies[].bond", K::Choice(names::<BondLawKind>), "\"cohesive-beam\"", "Bonded: law of the bonds. cohesive-beam: beams calibrated on the packing. local: interfaces with the numbers of the material. local-nonlocal: such interfaces beside the mean strain of their particles, so that the body has the elasticity of the material"),
     key("bodies[].coordination", K::Quantity(D::NONE), "chosen to suit Poisson's ratio", "Bonded: mean number of bonds of a particle"),
+    key("bodies[].wall_stiffening", K::Quantity(D::NONE), "0", "Bonded: share, at least 0, by which a bond is stiffer for each of its particles that touches a wall. Bonds end at the centres of the outer particles, so that a rim of half a particle bears nothing; with 0.25 tension, bending and torsion agree on the size of the body (docs/bonded/README.md)"),
     key("bodies[].convention", K::Choice(names::<Convention>), "\"interior\"", "Bonded: which particles the coordination counts: those that touch no wall, or all"),
     key("bodies[].groups", K::NamedTables, "", "Bonded and particles: further sets of its particles by name"),
     key("bodies[].groups.NAME", K::Condition, "", "Condition on the centre of a particle; the set is called BODY.NAME"),

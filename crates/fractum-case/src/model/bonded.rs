@@ -27,6 +27,8 @@ pub struct BondedBody {
     pub coordination: Option<Spanned<f64>>,
     /// How the coordination is counted.
     pub convention: Convention,
+    /// Share by which bonds are stiffer for each of their particles that touches a wall.
+    pub wall_stiffening: f64,
     /// Sets of its particles by name, each with a condition on the position.
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.

@@ -55,6 +55,21 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
             (coordination, table.choice("convention").or(Convention::Interior))
         }
     };
+    let stiffens = |here: &Material| match &here.fracture {
+        _ if law != BondLawKind::CohesiveBeam => Err("on interfaces: bond = \"cohesive-beam\" has it"),
+        Some(own) if own.value.strength.criterion.level().is_none() => Err(
+            "beside the criterion of single beams, which takes them as they are: choose one of the stress of particles",
+        ),
+        _ if matches!(replaces, Some(Some(_))) => Err("beside replaces: its walls are tied to the solid"),
+        _ => Ok(()),
+    };
+    let wall_stiffening = match here.map(stiffens) {
+        Some(Err(where_it_acts)) => {
+            table.refuse("wall_stiffening", where_it_acts);
+            0.0
+        }
+        _ => table.quantity("wall_stiffening").not_negative().or(0.0),
+    };
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
     Some(BondedBody {
@@ -64,6 +79,7 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         law,
         coordination,
         convention,
+        wall_stiffening,
         groups: groups?,
         initial_velocity: initial_velocity?,
     })

@@ -4,6 +4,17 @@ use fractum_math::{Vec3, numbered_parts};
 
 use crate::DemError;
 
+/// Refuses another number of factors than of bonds, unless there are none.
+///
+/// # Errors
+/// [`DemError::Length`].
+pub(crate) fn check_shares(pairs: &[[u32; 2]], shares: &[f64]) -> Result<(), DemError> {
+    if !shares.is_empty() && shares.len() != pairs.len() {
+        return Err(DemError::Length { what: "areas of bonds", found: shares.len(), expected: pairs.len() });
+    }
+    Ok(())
+}
+
 /// Refuses bonds that join nothing.
 ///
 /// # Errors

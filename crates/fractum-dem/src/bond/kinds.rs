@@ -282,4 +282,9 @@ impl Bonds {
     pub fn beam(&self) -> Option<BeamSection> {
         each!(self, network => network.law().beam())
     }
+
+    /// See [`BondLaw::share`].
+    pub fn share(&self, bond: usize) -> f64 {
+        each!(self, network => network.share(bond))
+    }
 }

@@ -20,8 +20,8 @@ pub use fractum_kernels::bond::{
     DeviatingForces, EnergyLanes, ForceLanes, Interface, InterfaceFailure, InterfaceMemory, LocalBond, MeanElasticity,
     RecentStrains, Separation, Turn,
 };
-pub(crate) use graph::check_pairs;
 pub use graph::{BondGraph, HalfEdge, Parts};
+pub(crate) use graph::{check_pairs, check_shares};
 pub use kinds::{AnyBondLaw, BondMemory, Bonds};
 pub use loads::{LoadLanes, LoadSizes};
 pub use network::BondNetwork;

@@ -8,7 +8,7 @@ use nalgebra::Matrix6;
 use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
-use super::graph::{BondGraph, check_pairs};
+use super::graph::{BondGraph, check_pairs, check_shares};
 use super::mean_strain::{MeanStrain, Separating};
 use super::subdomain::BondSubdomain;
 use crate::DemError;
@@ -52,7 +52,7 @@ impl<L: BondLaw> BondNetwork<L> {
         Self::with_shares(particles, pairs, &[], law)
     }
 
-    /// [`BondNetwork::new`] with a factor on the area of each bond, for laws that give bonds areas of their own.
+    /// [`BondNetwork::new`] with a factor on the area of each bond, or on the stiffness of its section.
     ///
     /// - `shares`: factors in the order of `pairs`; 1 where there are none
     ///
@@ -126,6 +126,11 @@ impl<L: BondLaw> BondNetwork<L> {
     /// The law of all bonds.
     pub fn law(&self) -> &L {
         &self.law
+    }
+
+    /// See [`BondLaw::share`].
+    pub fn share(&self, bond: usize) -> f64 {
+        L::share(&self.own[bond])
     }
 
     /// Breaks a bond for ever.
@@ -411,9 +416,7 @@ impl<L: BondLaw> BondNetwork<L> {
 
 /// The pairs with the smaller particle first, ascending, and the factors on their areas.
 fn sorted(particles: &Particles, pairs: &[[u32; 2]], shares: &[f64]) -> Result<(Vec<[u32; 2]>, Vec<f64>), DemError> {
-    if !shares.is_empty() && shares.len() != pairs.len() {
-        return Err(DemError::Length { what: "areas of bonds", found: shares.len(), expected: pairs.len() });
-    }
+    check_shares(pairs, shares)?;
     check_pairs(&particles.position, pairs)?;
     let share = |bond: usize| shares.get(bond).copied().unwrap_or(1.0);
     let ascending =

@@ -352,6 +352,8 @@ impl Strained {
         Strained { stretch: du.dot(&n), turn: [across(a), across(b)], twist: (b - a).dot(&n) }
     }
 
+    /// Of the section itself: its stress goes with its strain, whatever its share.
+    ///
     /// - `radius`: of the section [m]
     fn load(&self, end: &HalfBond, k: &Stiffness, radius: f64) -> BondLoad {
         let bend = 2.0 * k.bending * end.inverse;
@@ -404,9 +406,9 @@ impl LoadedBonds for StaticBody {
                     let du = [other[0] - own[0], other[1] - own[1], other[2] - own[2]];
                     let s = [own[3] + other[3], own[4] + other[4], own[5] + other[5]].map(|v| v * k.scale);
                     // l times the force on i, as in `Lattice::bond_forces`.
-                    let bend = 6.0 * k.bending * end.inverse;
+                    let bend = 6.0 * k.bending * end.share * end.inverse;
                     let transverse = 2.0 * bend * end.inverse;
-                    let along = (k.axial - transverse) * (du[0] * n[0] + du[1] * n[1] + du[2] * n[2]);
+                    let along = (k.axial * end.share - transverse) * (du[0] * n[0] + du[1] * n[1] + du[2] * n[2]);
                     let force = [
                         along * n[0] + transverse * du[0] - bend * (s[1] * n[2] - s[2] * n[1]),
                         along * n[1] + transverse * du[1] - bend * (s[2] * n[0] - s[0] * n[2]),

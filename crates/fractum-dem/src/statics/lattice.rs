@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use rayon::prelude::*;
 
 use crate::DemError;
-use crate::bond::{BeamSection, check_pairs};
+use crate::bond::{BeamSection, check_pairs, check_shares};
 
 /// Displacement (x, y, z) [m] and rotation (x, y, z) of a particle; or the force [N] and moment [N m] conjugate to it.
 pub type Dof6 = [f64; 6];
@@ -37,6 +37,8 @@ pub(crate) struct HalfBond {
     pub(crate) axis: [f64; 3],
     /// 1/length [1/m]; zero for a broken bond, which takes all its stiffness away.
     pub(crate) inverse: f64,
+    /// Factor on the stiffness of the section.
+    pub(crate) share: f64,
 }
 
 /// Prescribed degrees of freedom of the particles: a bit per fixed degree of freedom, and the value it is fixed to.
@@ -109,7 +111,24 @@ impl Lattice {
     /// # Errors
     /// A section that is no beam; a bond that joins nothing.
     pub fn new(position: &[Vec3], pairs: &[[u32; 2]], section: BeamSection, scale: f64) -> Result<Self, DemError> {
+        Self::with_shares(position, pairs, &[], section, scale)
+    }
+
+    /// [`Lattice::new`] with a factor on the stiffness of each beam.
+    ///
+    /// - `shares`: factors in the order of `pairs`; 1 where there are none
+    ///
+    /// # Errors
+    /// As [`Lattice::new`]; another number of factors than of bonds.
+    pub fn with_shares(
+        position: &[Vec3],
+        pairs: &[[u32; 2]],
+        shares: &[f64],
+        section: BeamSection,
+        scale: f64,
+    ) -> Result<Self, DemError> {
         section.check()?;
+        check_shares(pairs, shares)?;
         let count = position.len();
         let mut offsets = vec![0u32; count + 1];
         check_pairs(position, pairs)?;
@@ -121,15 +140,16 @@ impl Lattice {
             offsets[i + 1] += offsets[i];
         }
         let mut next = offsets.clone();
-        let mut ends = vec![HalfBond { other: 0, bond: 0, axis: [0.0; 3], inverse: 0.0 }; 2 * pairs.len()];
+        let mut ends = vec![HalfBond { other: 0, bond: 0, axis: [0.0; 3], inverse: 0.0, share: 1.0 }; 2 * pairs.len()];
         let mut halves = Vec::with_capacity(pairs.len());
         for (bond, &[first, second]) in pairs.iter().enumerate() {
             let d = position[second as usize] - position[first as usize];
             let length = d.norm();
+            let share = shares.get(bond).copied().unwrap_or(1.0);
             halves.push([(first, second, 1.0), (second, first, -1.0)].map(|(own, other, sign)| {
                 let axis = (d * (sign / length)).into();
                 let slot = next[own as usize];
-                ends[slot as usize] = HalfBond { other, bond: bond as u32, axis, inverse: 1.0 / length };
+                ends[slot as usize] = HalfBond { other, bond: bond as u32, axis, inverse: 1.0 / length, share };
                 next[own as usize] += 1;
                 slot
             }));
@@ -201,10 +221,11 @@ impl Lattice {
             let other = &x[end.other as usize];
             let n = end.axis;
             let inverse = end.inverse;
-            let bend = k.bending * inverse;
+            let stiff = inverse * end.share;
+            let bend = k.bending * stiff;
             let shear = 6.0 * bend * inverse * k.scale;
             let transverse = 12.0 * bend * inverse * inverse;
-            let axial = k.axial * inverse - transverse;
+            let axial = k.axial * stiff - transverse;
             let du = [other[0] - own[0], other[1] - own[1], other[2] - own[2]];
             let stretch = axial * (du[0] * n[0] + du[1] * n[1] + du[2] * n[2]);
             let sum = [own[3] + other[3], own[4] + other[4], own[5] + other[5]];
@@ -214,7 +235,7 @@ impl Lattice {
             let twist =
                 (sum[0] - 2.0 * own[3]) * n[0] + (sum[1] - 2.0 * own[4]) * n[1] + (sum[2] - 2.0 * own[5]) * n[2];
             let along =
-                two * (mix[0] * n[0] + mix[1] * n[1] + mix[2] * n[2]) + k.torsion * k.scale * k.scale * inverse * twist;
+                two * (mix[0] * n[0] + mix[1] * n[1] + mix[2] * n[2]) + k.torsion * k.scale * k.scale * stiff * twist;
             f[0] += shear * (sum[1] * n[2] - sum[2] * n[1]) - stretch * n[0] - transverse * du[0];
             f[1] += shear * (sum[2] * n[0] - sum[0] * n[2]) - stretch * n[1] - transverse * du[1];
             f[2] += shear * (sum[0] * n[1] - sum[1] * n[0]) - stretch * n[2] - transverse * du[2];
@@ -266,12 +287,13 @@ impl Lattice {
     pub(crate) fn diagonal_row(&self, i: usize, k: &Stiffness) -> Dof6 {
         let mut d = [0.0; 6];
         for end in self.ends(i) {
-            let bend = k.bending * end.inverse;
+            let stiff = end.inverse * end.share;
+            let bend = k.bending * stiff;
             let transverse = 12.0 * bend * end.inverse * end.inverse;
             for a in 0..3 {
                 let square = end.axis[a] * end.axis[a];
-                d[a] += k.axial * end.inverse * square + transverse * (1.0 - square);
-                d[a + 3] += k.scale * k.scale * (4.0 * bend * (1.0 - square) + k.torsion * end.inverse * square);
+                d[a] += k.axial * stiff * square + transverse * (1.0 - square);
+                d[a + 3] += k.scale * k.scale * (4.0 * bend * (1.0 - square) + k.torsion * stiff * square);
             }
         }
         d
@@ -312,14 +334,14 @@ impl Lattice {
                 let n = Vec3::from(end.axis);
                 let du = Vec3::new(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
                 let sum = Vec3::new(a[3] + b[3], a[4] + b[4], a[5] + b[5]);
-                let bend = k.bending * end.inverse * end.inverse;
+                let stiff = end.inverse * end.share;
+                let bend = k.bending * stiff * end.inverse;
                 let along = du.dot(&n);
                 let across = du - n * along;
                 visit(
                     i,
                     j,
-                    n * (k.axial * end.inverse * along) + across * (12.0 * bend * end.inverse)
-                        - sum.cross(&n) * (6.0 * bend),
+                    n * (k.axial * stiff * along) + across * (12.0 * bend * end.inverse) - sum.cross(&n) * (6.0 * bend),
                 );
             }
         }
@@ -495,7 +517,8 @@ mod tests {
         );
         let position = [Vec3::zeros(), axis * 1.2];
         let start = BondedPair { position, rotation: [Rotation::identity(); 2], axis, length: 1.2 };
-        let lattice = Lattice::new(&position, &[[0, 1]], section, 0.5).unwrap();
+        let share = 1.3;
+        let lattice = Lattice::with_shares(&position, &[[0, 1]], &[share], section, 0.5).unwrap();
         let h = 1e-7;
         for dof in 0..12 {
             let mut state = [[0.0; 6]; 2];
@@ -506,7 +529,7 @@ mod tests {
                 rotation: [Rotation::from_scaled_axis(shift(0, 3)), Rotation::from_scaled_axis(shift(1, 3))],
                 ..start
             };
-            let BondForces { force, moment } = section.force(&moved, &(), &mut ());
+            let BondForces { force, moment } = section.force(&moved, &share, &mut ());
             let expected = lattice.internal(&state);
             for a in 0..3 {
                 for (found, row) in [

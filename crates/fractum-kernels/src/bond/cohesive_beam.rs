@@ -83,7 +83,8 @@ fn relative<const W: usize>((w1, u1): Turn<W>, (w2, u2): Turn<W>) -> Turn<W> {
 /// The beam as a bond of discrete elements: André, Iordanoff, Charles and Néauport, *Comput. Methods Appl. Mech. Eng.*
 /// 213–216 (2012) 113–125; forces after Jebahi et al. (2015), 2.4.1, with the signs corrected.
 impl BondLaw for BeamSection {
-    type Parameters = ();
+    /// Factor on the stiffness of the section.
+    type Parameters = f64;
     type Memory = ();
     type Recent<const W: usize> = ();
 
@@ -92,12 +93,20 @@ impl BondLaw for BeamSection {
     }
 
     #[inline]
-    fn parameters(&self, _: f64, _: [f64; 2], _: f64) {}
+    fn parameters(&self, _: f64, _: [f64; 2], share: f64) -> f64 {
+        share
+    }
 
     #[inline(always)]
-    fn forces<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &mut (), _: &mut [(); W]) -> ForceLanes<W> {
+    fn forces<const W: usize>(
+        &self,
+        bonds: &BondLanes<W>,
+        own: &[f64; W],
+        _: &mut (),
+        _: &mut [(); W],
+    ) -> ForceLanes<W> {
         let BondLanes { gap, turns, axis, inverse, live } = *bonds;
-        let stiffness = inverse * live;
+        let stiffness = inverse * live * Lanes(*own);
         let axial = stiffness * Lanes::splat(self.axial());
         let bend = stiffness * Lanes::splat(2.0 * self.bending());
         let twist = stiffness * Lanes::splat(self.torsion());
@@ -125,9 +134,9 @@ impl BondLaw for BeamSection {
     }
 
     #[inline(always)]
-    fn energies<const W: usize>(&self, bonds: &BondLanes<W>, _: &[(); W], _: &(), _: &[(); W]) -> EnergyLanes<W> {
+    fn energies<const W: usize>(&self, bonds: &BondLanes<W>, own: &[f64; W], _: &(), _: &[(); W]) -> EnergyLanes<W> {
         let BondLanes { gap, turns: [first, second], axis, inverse, .. } = *bonds;
-        let half = inverse * Lanes::splat(0.5);
+        let half = inverse * Lanes::splat(0.5) * Lanes(*own);
         let l = dot(gap, gap).sqrt();
         let n = scale(gap, l.recip());
         let (a, b) = (cross(n, rotate(first.0, first.1, axis)), cross(n, rotate(second.0, second.1, axis)));
@@ -142,18 +151,18 @@ impl BondLaw for BeamSection {
     }
 
     #[inline]
-    fn dissipated(&self, _: f64, _: &(), _: &()) -> f64 {
+    fn dissipated(&self, _: f64, _: &f64, _: &()) -> f64 {
         0.0
     }
 
     #[inline]
-    fn stiffness(&self, length: f64, _: &()) -> BondStiffness {
-        let bending = self.bending() / length;
+    fn stiffness(&self, length: f64, share: &f64) -> BondStiffness {
+        let bending = share * self.bending() / length;
         BondStiffness {
-            axial: self.axial() / length,
+            axial: share * self.axial() / length,
             bending: 4.0 * bending,
             carry_over: 2.0 * bending,
-            twist: self.torsion() / length,
+            twist: share * self.torsion() / length,
         }
     }
 
@@ -170,6 +179,11 @@ impl BondLaw for BeamSection {
     #[inline]
     fn beam(&self) -> Option<BeamSection> {
         Some(*self)
+    }
+
+    #[inline]
+    fn share(own: &f64) -> f64 {
+        *own
     }
 }
 
@@ -194,6 +208,7 @@ mod tests {
     }
 
     const UNIT: std::ops::Range<f64> = -1.0..1.0;
+    const SHARE: f64 = 1.3;
 
     fn section() -> BeamSection {
         BeamSection { young_modulus: 2.0, poisson_ratio: 0.3, radius: 0.6 }
@@ -205,8 +220,8 @@ mod tests {
             x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
         ) {
             let pair = pair_of(x, r, s, n);
-            let forces = section().force(&pair, &(), &mut ());
-            let energy = |p: &BondedPair| section().energy(p, &(), &()).total();
+            let forces = section().force(&pair, &SHARE, &mut ());
+            let energy = |p: &BondedPair| section().energy(p, &SHARE, &()).total();
             let h = 1e-5;
             let size = forces.force.norm() + forces.moment[0].norm() + forces.moment[1].norm() + 1e-3;
             for axis in 0..3 {
@@ -228,7 +243,7 @@ mod tests {
             x in prop::array::uniform3(UNIT), r in prop::array::uniform3(UNIT), s in prop::array::uniform3(UNIT), n in prop::array::uniform3(UNIT),
         ) {
             let pair = pair_of(x, r, s, n);
-            let BondForces { force, moment } = section().force(&pair, &(), &mut ());
+            let BondForces { force, moment } = section().force(&pair, &SHARE, &mut ());
             let arm = pair.position[1] - pair.position[0];
             let total = arm.cross(&force) + moment[0] + moment[1];
             prop_assert!(total.norm() < 1e-13 * (arm.norm() * force.norm() + moment[0].norm() + moment[1].norm()));
@@ -242,7 +257,7 @@ mod tests {
             let axis = (Vec3::from(n) + Vec3::new(2.5, 0.0, 0.0)).normalize();
             let start = Vec3::from(x);
             let pair = BondedPair { position: [start, start + rotation * axis * 1.2], rotation: [rotation; 2], axis, length: 1.2 };
-            let BondForces { force, moment } = section().force(&pair, &(), &mut ());
+            let BondForces { force, moment } = section().force(&pair, &SHARE, &mut ());
             let stiff = section().axial() / 1.2;
             prop_assert!(force.norm() + moment[0].norm() + moment[1].norm() < 3e-14 * stiff * (1.0 + start.norm()));
         }
@@ -254,7 +269,7 @@ mod tests {
             let pair = pair_of(x, r, s, [0.0; 3]);
             let turn = Rotation::from_scaled_axis(Vec3::from(q));
             let turned = BondedPair { position: pair.position.map(|p| turn * p), rotation: pair.rotation.map(|r| turn * r), ..pair };
-            let (a, b) = (section().force(&pair, &(), &mut ()), section().force(&turned, &(), &mut ()));
+            let (a, b) = (section().force(&pair, &SHARE, &mut ()), section().force(&turned, &SHARE, &mut ()));
             prop_assert!((turn * a.force - b.force).norm() < 1e-13 * (1.0 + a.force.norm()));
             prop_assert!((turn * a.moment[0] - b.moment[0]).norm() < 1e-13 * (1.0 + a.moment[0].norm()));
         }

@@ -116,6 +116,11 @@ pub trait BondLaw: Copy + Debug + PartialEq + Send + Sync + 'static {
         None
     }
 
+    /// Factor on the stiffness of a bond's beam.
+    fn share(_: &Self::Parameters) -> f64 {
+        1.0
+    }
+
     /// How a bond has separated by the law itself, which from then on is that of a contact.
     fn separation(_: &Self::Memory) -> Option<Separation> {
         None

@@ -58,7 +58,8 @@ impl Maker<'_> {
             return Ok(FoundStrengths { criterion, origin: Origin::Given, pulling: None, crushing: None });
         };
         let (convention, dispersion) = (self.asked.convention, sample.packing.dispersion);
-        let bonds = BondKind { micro, coordination, convention, dispersion };
+        let wall_stiffening = self.asked.wall_stiffening;
+        let bonds = BondKind { micro, coordination, convention, dispersion, wall_stiffening };
         let pulling_key = PullingKey { bonds, asked, criterion };
         let (pulled, origin) = self.kept("strength", key(&pulling_key), || {
             self.tell("three boxes of such bonds are broken in tension to find the strength of the criterion");

@@ -80,7 +80,8 @@ impl BondedStatics {
         let all = &bonded.particles;
         let mean_radius = all.radius.iter().sum::<f64>() / all.len().max(1) as f64;
         let section = body.bonds.beam().ok_or(DemError::NoLattice)?;
-        let lattice = Lattice::new(&bonded.reference, body.bonds.pairs(), section, mean_radius)?;
+        let shares: Vec<f64> = (0..body.bonds.len()).map(|bond| body.bonds.share(bond)).collect();
+        let lattice = Lattice::with_shares(&bonded.reference, body.bonds.pairs(), &shares, section, mean_radius)?;
         let mut supports = LatticeSupports::none(all.len());
         for (i, held) in (0..).zip(&all.held) {
             (0..6).filter(|d| held >> d & 1 == 1).for_each(|d| supports.set(i, d, 0.0));

@@ -61,10 +61,11 @@ pub(super) fn transit_rate(bonded: &Bonded, beams: &[(u32, u32, BeamSection)]) -
 /// The beams that hold, with the particles at their ends.
 pub(super) fn beams(bonded: &Bonded) -> Vec<(u32, u32, BeamSection)> {
     let bodies = bonded.bodies.iter().filter_map(|body| Some((&body.bonds, body.bonds.beam()?)));
-    let of = |(bonds, section)| {
-        let bonds: &Bonds = bonds;
+    let of = |(bonds, section): (&Bonds, BeamSection)| {
         let live = bonds.pairs().iter().enumerate().filter(|(bond, _)| bonds.is_live(*bond));
-        live.map(move |(_, &[i, j])| (i, j, section)).collect::<Vec<_>>()
+        // All of its stiffness goes with Young's modulus.
+        let own = move |bond| BeamSection { young_modulus: bonds.share(bond) * section.young_modulus, ..section };
+        live.map(|(bond, &[i, j])| (i, j, own(bond))).collect::<Vec<_>>()
     };
     bodies.flat_map(of).collect()
 }

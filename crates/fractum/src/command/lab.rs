@@ -45,6 +45,9 @@ pub(crate) struct TestArguments {
     /// Young's modulus of the beams, such as "700 GPa".
     #[arg(long, default_value = "1 GPa")]
     beam_young: String,
+    /// Share by which bonds are stiffer for each of their particles at a wall.
+    #[arg(long, default_value_t = 0.0)]
+    wall_stiffening: f64,
     /// Density of the continuum, for the tests in time.
     #[arg(long, default_value = "1000 kg/m^3")]
     density: String,
@@ -107,7 +110,8 @@ fn test(arguments: &TestArguments) -> Result<(), Failure> {
     }
     let packing = arguments.shape.packing()?;
     let result = (|| -> Result<serde_json::Value, CalibrateError> {
-        let mut sample = Sample::new(packing, arguments.coordination, arguments.convention)?;
+        let sample = Sample::new(packing, arguments.coordination, arguments.convention)?;
+        let mut sample = sample.stiffen_walls(arguments.wall_stiffening)?;
         sample.set_micro(micro)?;
         let tolerance = Tolerance::default();
         let value = match arguments.test {

@@ -41,6 +41,9 @@ pub(crate) struct BreakArguments {
     /// Beam radius over the mean particle radius.
     #[arg(long, default_value_t = 0.348)]
     radius_ratio: f64,
+    /// Share by which bonds are stiffer for each of their particles at a wall.
+    #[arg(long, default_value_t = 0.0)]
+    wall_stiffening: f64,
     /// Young's modulus of the beams, such as "678 GPa".
     #[arg(long, default_value = "678 GPa")]
     beam_young: String,
@@ -171,9 +174,15 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let micro = Micro { radius_ratio: arguments.radius_ratio, young_modulus: pressure(&arguments.beam_young)? };
     let packing = arguments.shape.packing()?;
     let started = Instant::now();
-    let mut sample = Sample::new(packing, arguments.coordination, arguments.convention).map_err(wrong)?;
+    let sample = Sample::new(packing, arguments.coordination, arguments.convention).map_err(wrong)?;
+    let mut sample = sample.stiffen_walls(arguments.wall_stiffening).map_err(wrong)?;
     sample.set_micro(micro).map_err(|error| Failure::input(error.to_string()))?;
     let criterion = arguments.criterion(&sample)?;
+    if arguments.wall_stiffening > 0.0 && criterion.level().is_none() {
+        return Err(Failure::input(
+            "--wall-stiffening has no effect on a criterion of single beams; choose one of the stress of particles",
+        ));
+    }
     let test: lab::Failure = arguments.test.into();
     let mut options = lab::FailureOptions::new(test, criterion);
     options.batch = arguments.batch;

@@ -133,10 +133,14 @@ impl Plan {
                 from(report.packing, "made now")
             ),
         );
+        let stiffer = match report.wall_stiffening {
+            0.0 => String::new(),
+            by => format!("; stiffer by {by} for each of their particles at a wall"),
+        };
         self.add(
             "",
             format!(
-                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {})",
+                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {}){stiffer}",
                 report.bonds, report.coordination_interior, report.coordination_all, report.convention
             ),
         );

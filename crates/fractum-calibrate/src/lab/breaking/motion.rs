@@ -200,7 +200,8 @@ impl MovingSample {
         let volume = sample.measured_volume();
         let (position, radius) = (sample.packing.position.clone(), sample.packing.radius.clone());
         let mut particles = Particles::at_rest(position, radius, motion.density * volume)?;
-        let mut bonds = Bonds::new(&particles, &sample.network.pairs, sample.lattice.section())?;
+        let mut bonds =
+            Bonds::with_shares(&particles, &sample.network.pairs, &sample.shares, sample.lattice.section())?;
         let mut fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
         // Wave speed from the stiffness that the sample shows: c² = E/ρ with E = stress per strain.
         let first_factor = first.displacement / displacement;
