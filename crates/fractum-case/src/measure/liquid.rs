@@ -51,7 +51,7 @@ struct OfLiquid(LiquidMeasure);
 
 impl Probe for OfLiquid {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        liquid_of(probed.scene).map_or(f64::NAN, |liquid| liquid.measure(self.0))
+        liquid_of(probed.scene).map_or(f64::NAN, |liquid| liquid.measure(probed.scene.interfaces(), self.0))
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

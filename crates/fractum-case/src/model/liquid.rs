@@ -24,6 +24,13 @@ pub struct Liquid {
     pub injections: Vec<LiquidInjection>,
 }
 
+impl Liquid {
+    /// Whether it flows in an interface of some name.
+    pub fn flows_in(&self, interface: &str) -> bool {
+        self.interfaces.is_empty() || self.interfaces.iter().any(|own| own.value == interface)
+    }
+}
+
 /// A place at which liquid comes in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LiquidInjection {

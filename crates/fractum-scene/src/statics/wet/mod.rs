@@ -122,7 +122,7 @@ impl StaticSolver {
             compliance
                 .displace(scene, &mut self.system, &mut field, &boundary.force, pushed.into_iter())
                 .map_err(|error| apart(scene, error))?;
-            return Ok(Some((field, trial.into_state(scene, &step), iterations)));
+            return Ok(Some((field, trial.into_state(scene, compliance, &step), iterations)));
         }
         Ok(None)
     }
