@@ -42,7 +42,8 @@ fn a_crack_under_in_situ_stress_is_the_one_without_at_the_pressure_above_it() {
     let place = of_gallery(&CONFINED.replace("duration/60", "duration/20"));
     for nu in ["0.1", "0.2", "0.3", "0.4"] {
         let of = |sets: &[&str]| {
-            let sets = [&[&format!("nu={nu}")], sets].concat();
+            let nu = format!("nu={nu}");
+            let sets = [&[nu.as_str()], sets].concat();
             probes(&run_with(&place, &sets), ["opening", "net", "area"])
         };
         let free = of(&["stress=1 Pa", "along=1 Pa"]);
@@ -53,4 +54,136 @@ fn a_crack_under_in_situ_stress_is_the_one_without_at_the_pressure_above_it() {
             }
         }
     }
+}
+
+/// The stress of the solids, or the traction that makes it.
+#[test]
+fn in_situ_stress_opposes_the_liquid_as_a_traction_does() {
+    let text = VISCOSITY.replace("duration/240", "duration/40");
+    let load = "[[loads]]\ngroup = \"top\"\ntraction = { y = \"-stress\" }\n";
+    let before = "[in_situ]\nstress = { xx = \"-stress/3\", yy = \"-stress\" }\ngroups = [\"right\", \"top\"]\n";
+    assert!(text.contains(load));
+    let of = |text: &str| probes(&run_with(&of_gallery(text), &[]), ["opening", "net", "area"]);
+    for (found, loaded) in of(&text.replace(load, before)).iter().zip(of(&text)) {
+        assert!((found / loaded - 1.0).abs() < 1e-6, "{found} {loaded}");
+    }
+}
+
+/// A thousandth of the size: the toughness pressure K/√(πl) stays with a thousandth of the fracture energy.
+#[test]
+fn a_crack_of_millimetres_under_in_situ_stress_has_the_same_pressure() {
+    let text = CONFINED.replace("duration/60", "duration/20");
+    let small = text
+        .replace("unit = \"m\"", "unit = \"mm\"")
+        .replace("x < 1 mm", "x < 1 um")
+        .replace("\"32 J/m^2\"", "\"0.032 J/m^2\"")
+        .replace("\"1e-6 m^2/s\"", "\"1e-12 m^2/s\"");
+    let of = |text: &str| probes(&run_with(&of_gallery(text), &[]), ["opening", "net", "area"]);
+    let [large, small] = [of(&text), of(&small)];
+    for (index, scale) in [(0, 1e-3), (1, 1.0), (2, 1e-3)] {
+        assert!((small[index] / large[index] / scale - 1.0).abs() < 1e-6, "{small:?} {large:?}");
+    }
+}
+
+/// A joint at 45 degrees to -1 and -3 MPa, 0.8 m long in a square of 4 m: liquid everywhere in it, whose pressure grows.
+const INCLINED: &str = r#"fractum = 1
+[parameters]
+p = "0.2 MPa"
+nu = 0.25
+[mesh]
+file = "bar.msh"
+[[mesh.joints]]
+name = "joint"
+table = [["1.7171573 m", "1.7171573 m", "2.2828427 m", "2.2828427 m"]]
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "40 GPa"
+poisson_ratio = "nu"
+[[bodies]]
+name = "rock"
+kind = "solid"
+group = "body"
+material = "rock"
+plane = "strain"
+thickness = "1 m"
+[[interfaces]]
+name = "joint"
+group = "joint"
+bonded = false
+residual_friction_angle = "30 deg"
+[in_situ]
+stress = { xx = "-1 MPa", yy = "-3 MPa" }
+groups = ["x-", "x+", "y-", "y+"]
+[liquid]
+viscosity = "1 mPa s"
+aperture = "0.1 mm"
+[[liquid.injections]]
+group = "joint"
+pressure = "p*t/1 s"
+[[supports]]
+where = "hypot(x, y) < 1 mm"
+fix = "xy"
+[[supports]]
+where = "hypot(x - 4 m, y) < 1 mm"
+fix = "y"
+[solver]
+kind = "static"
+control = "time"
+end = "1 s"
+step = "0.05 s"
+[[probes]]
+name = "rubbed"
+energy = "friction"
+"#;
+
+/// It slides as (2 MPa - p) tan 30° falls below the shear stress of 1 MPa, at p = 0.268 MPa. Beyond, the closed form of a crack under the shear stress
+/// s = 1 MPa - (2 MPa - p) tan 30° slides by the area 2π a² s/E', and friction takes ∫ (2 MPa - p) tan 30° dA.
+#[test]
+fn liquid_lets_an_inclined_joint_slide_as_its_effective_stress_falls() {
+    let mesh = mesh_bytes(&structured_rectangle([48, 48], [4.0, 4.0], None), MshFormat::V4_1Binary);
+    let place = Workplace::with_mesh(INCLINED, &mesh);
+    let slope = f64::to_radians(30.0).tan();
+    for nu in ["0.1", "0.25", "0.4"] {
+        let rubbed = |p: &str| energy(&run_with(&place, &[&format!("nu={nu}"), &format!("p={p}")]), "friction");
+        assert!(rubbed("0.25 MPa").abs() < 1e-6 && rubbed("0.29 MPa") > 1e-6, "{nu}");
+        let (p, modulus) = (1e6, 40e9 / (1.0 - nu.parse::<f64>().unwrap().powi(2)));
+        let per_stress = 2.0 * PI * 0.4 * 0.4 / modulus;
+        let [first, last] = [1e6, (2e6 - p) * slope];
+        let exact = 0.5 * (first + last) * (first - last) * per_stress;
+        let found = rubbed("1 MPa");
+        assert!((found / exact - 1.0).abs() < 0.08, "{nu}: {found} {exact}");
+    }
+}
+
+/// After shut-in walls take the liquid: the pressure falls to the stress across the crack, and is gone once the crack has closed.
+#[test]
+fn the_pressure_after_shut_in_falls_to_the_closing_stress() {
+    let case = include_str!("../../../cases/liquid/shut-in.toml").replace("duration/60", "duration/20");
+    let start = case.find("stop_when").unwrap();
+    let end = start + case[start..].find('\n').unwrap();
+    let place = of_gallery(&format!("{}{}", &case[..start], &case[end..]));
+    for stress in [1e6, 10e6, 50e6] {
+        let set = format!("stress={stress} Pa");
+        let one = run_with(&place, &[&set, "leak_off=1e-6 m/s^0.5"]);
+        let [pressure, volume, whole] = probes(&one, ["pressure", "volume", "whole"]);
+        assert!(pressure == 0.0 && volume.abs() < 1e-12 && (whole - 1.0).abs() < 1e-9, "{set} {pressure} {volume}");
+        let rows = history(&place, "one", &["time", "pressure", "opening"]);
+        let largest = rows.iter().map(|row| row[2]).fold(0.0, f64::max);
+        let closing: Vec<_> = rows.iter().filter(|row| row[0] > 320.0 && row[2] > 0.01 * largest).collect();
+        assert!(closing.len() > 5 && closing.windows(2).all(|rows| rows[1][1] < rows[0][1] + 1.0), "{set}");
+        let net = closing.last().unwrap()[1] - stress;
+        assert!((0.0..0.1e6).contains(&net), "{set}: {net} Pa above the stress");
+    }
+}
+
+#[test]
+fn a_crack_under_in_situ_stress_has_the_same_bits_on_any_threads_and_after_a_resume() {
+    let text = CONFINED.replace("duration/60", "duration/20");
+    let place = of_gallery(&format!("{text}\n[output]\ncheckpoint = {{ every = \"60 s\" }}\n"));
+    let one = run(&place, "one", "1");
+    for threads in ["2", "7"] {
+        assert_eq!(one["state_hash"], run(&place, threads, threads)["state_hash"]);
+    }
+    assert_eq!(one["state_hash"], resumed(&place, "2")["state_hash"]);
+    assert_eq!(summary(&place, "2")["energy"], one["energy"]);
 }

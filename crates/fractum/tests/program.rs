@@ -9,6 +9,7 @@ mod bonded;
 mod book;
 mod breaking;
 mod contact_pairs;
+mod confined;
 mod corpus;
 mod doors;
 mod drive;
