@@ -276,19 +276,19 @@ fn a_crack_that_toughness_resists_follows_its_asymptote() {
         Pumped { viscosity: 1e-4, ..TOUGH },
     ] {
         let (_, found) = errors(&own, Pumped::of_toughness);
-        within(found, [0.05; 3]);
+        within(found, [0.006, 0.006, 0.05]);
     }
 }
 
 /// A quarter of a disc in space.
 const DISC: Pumped = Pumped { is_disc: true, far: 6.0, growth: 1.5, steps: 16.0, ..VISCOUS };
 
-/// Ten elements along the radius, and two in the process zone.
+/// Ten elements along the radius, and two in the process zone, which is wet and counts in the radius.
 #[test]
-fn a_disc_that_toughness_resists_misses_its_asymptote_by_no_more_than_is_told() {
+fn a_disc_that_toughness_resists_follows_its_asymptote() {
     let tough = Pumped { law: BONDED, viscosity: 1e-5, rate: 4e-6, end: 60.0, stress: 0.0, size: 0.125, ..DISC };
     let (_, found) = errors(&Pumped { length: 1.2, ..tough }, Pumped::of_toughness);
-    within(found, [0.11, 0.19, 0.05]);
+    within(found, [0.02, 0.02, 0.09]);
 }
 
 /// Without stress the liquid lags behind the tip of its crack: ahead of the front the crack is open and dry.

@@ -24,7 +24,7 @@ fn run_with(place: &Workplace, sets: &[&str]) -> Value {
     let ended = place.fractum(&arguments);
     assert_eq!(ended.code, Some(0), "{sets:?}: {}", ended.stderr);
     let one = summary(place, "one");
-    assert!(energy(&one, "residual_max_relative") < 1e-6, "{sets:?}: {}", one["energy"]);
+    assert!(energy(&one, "residual_max_relative") < 1e-5, "{sets:?}: {}", one["energy"]);
     one
 }
 
@@ -36,19 +36,22 @@ fn energy(of: &Value, name: &str) -> f64 {
     of["energy"][name].as_f64().unwrap_or(0.0)
 }
 
-/// Elastic solids: what the stress adds is the pressure that it takes to open the crack against it.
+/// Elastic solids: what the stress adds is the pressure that it takes to open the crack against it. The loads of the far field give way by the stress across
+/// the crack times its volume.
 #[test]
 fn a_crack_under_in_situ_stress_is_the_one_without_at_the_pressure_above_it() {
     let place = of_gallery(&CONFINED.replace("duration/60", "duration/20"));
     for nu in ["0.1", "0.2", "0.3", "0.4"] {
         let of = |sets: &[&str]| {
             let nu = format!("nu={nu}");
-            let sets = [&[nu.as_str()], sets].concat();
-            probes(&run_with(&place, &sets), ["opening", "net", "area"])
+            let one = run_with(&place, &[&[nu.as_str()], sets].concat());
+            (probes(&one, ["opening", "net", "area"]), energy(&one, "external"))
         };
-        let free = of(&["stress=1 Pa", "along=1 Pa"]);
-        for sets in [["stress=1 MPa", "along=1 MPa"], ["stress=10 MPa", "along=6 MPa"], ["stress=50 MPa", "along=80 MPa"]] {
-            let found = of(&sets);
+        let (free, _) = of(&["stress=1 Pa", "along=1 Pa"]);
+        for (stress, along) in [(1e6, 1e6), (10e6, 6e6), (50e6, 80e6)] {
+            let sets = [&*format!("stress={stress} Pa"), &*format!("along={along} Pa")];
+            let (found, external) = of(&sets);
+            assert!((external / (-stress * 0.5e-6 * 320.0) - 1.0).abs() < 1e-3, "nu {nu}, {sets:?}: {external} J");
             for (found, free) in found.iter().zip(free) {
                 assert!((found / free - 1.0).abs() < 1e-3, "nu {nu}, {sets:?}: {found} {free}");
             }
@@ -56,16 +59,17 @@ fn a_crack_under_in_situ_stress_is_the_one_without_at_the_pressure_above_it() {
     }
 }
 
-/// The stress of the solids, or the traction that makes it.
+/// The stress of the solids, or the traction that makes it. A joint that gives way bears less of the traction than the solid beyond its end: this one hardly does.
 #[test]
 fn in_situ_stress_opposes_the_liquid_as_a_traction_does() {
-    let text = VISCOSITY.replace("duration/240", "duration/40");
+    let stiff = "bonded = false\nnormal_stiffness = \"6e15 Pa/m\"\nshear_stiffness = \"6e15 Pa/m\"";
+    let text = VISCOSITY.replace("duration/240", "duration/40").replace("bonded = false", stiff);
     let load = "[[loads]]\ngroup = \"top\"\ntraction = { y = \"-stress\" }\n";
     let before = "[in_situ]\nstress = { xx = \"-stress/3\", yy = \"-stress\" }\ngroups = [\"right\", \"top\"]\n";
     assert!(text.contains(load));
     let of = |text: &str| probes(&run_with(&of_gallery(text), &[]), ["opening", "net", "area"]);
     for (found, loaded) in of(&text.replace(load, before)).iter().zip(of(&text)) {
-        assert!((found / loaded - 1.0).abs() < 1e-6, "{found} {loaded}");
+        assert!((found / loaded - 1.0).abs() < 1e-7, "{found} {loaded}");
     }
 }
 
@@ -140,18 +144,23 @@ energy = "friction"
 /// s = 1 MPa - (2 MPa - p) tan 30° slides by the area 2π a² s/E', and friction takes ∫ (2 MPa - p) tan 30° dA.
 #[test]
 fn liquid_lets_an_inclined_joint_slide_as_its_effective_stress_falls() {
-    let mesh = mesh_bytes(&structured_rectangle([48, 48], [4.0, 4.0], None), MshFormat::V4_1Binary);
-    let place = Workplace::with_mesh(INCLINED, &mesh);
+    let [coarse, fine] = [80, 160].map(|cells| {
+        let mesh = structured_rectangle([cells, cells], [4.0, 4.0], None);
+        Workplace::with_mesh(INCLINED, &mesh_bytes(&mesh, MshFormat::V4_1Binary))
+    });
     let slope = f64::to_radians(30.0).tan();
-    for nu in ["0.1", "0.25", "0.4"] {
-        let rubbed = |p: &str| energy(&run_with(&place, &[&format!("nu={nu}"), &format!("p={p}")]), "friction");
-        assert!(rubbed("0.25 MPa").abs() < 1e-6 && rubbed("0.29 MPa") > 1e-6, "{nu}");
+    for nu in ["0.1", "0.4"] {
+        let rubbed = |place: &Workplace, p: &str| {
+            energy(&run_with(place, &[&format!("nu={nu}"), &format!("p={p}")]), "friction")
+        };
+        assert!(rubbed(&coarse, "0.25 MPa").abs() < 1e-6 && rubbed(&coarse, "0.29 MPa") > 0.1, "{nu}");
         let (p, modulus) = (1e6, 40e9 / (1.0 - nu.parse::<f64>().unwrap().powi(2)));
         let per_stress = 2.0 * PI * 0.4 * 0.4 / modulus;
         let [first, last] = [1e6, (2e6 - p) * slope];
         let exact = 0.5 * (first + last) * (first - last) * per_stress;
-        let found = rubbed("1 MPa");
-        assert!((found / exact - 1.0).abs() < 0.08, "{nu}: {found} {exact}");
+        // Elements at the tips make the joint too short, by some part of themselves; the sides, five of its lengths away, add some percent.
+        let found = 2.0 * rubbed(&fine, "1 MPa") - rubbed(&coarse, "1 MPa");
+        assert!((found / exact - 1.0).abs() < 0.06, "{nu}: {found} {exact}");
     }
 }
 
@@ -179,7 +188,7 @@ fn the_pressure_after_shut_in_falls_to_the_closing_stress() {
 #[test]
 fn a_crack_under_in_situ_stress_has_the_same_bits_on_any_threads_and_after_a_resume() {
     let text = CONFINED.replace("duration/60", "duration/20");
-    let place = of_gallery(&format!("{text}\n[output]\ncheckpoint = {{ every = \"60 s\" }}\n"));
+    let place = of_gallery(&format!("{text}\n[output]\ncheckpoint = {{ every = \"1 ms\" }}\n"));
     let one = run(&place, "one", "1");
     for threads in ["2", "7"] {
         assert_eq!(one["state_hash"], run(&place, threads, threads)["state_hash"]);
