@@ -6,9 +6,7 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, CutError, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{
-    CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface,
-};
+use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};

@@ -49,12 +49,15 @@ fn check_names(context: &mut Context<'_>, liquid: &model::Liquid) {
         });
     }
     for interface in &context.case.interfaces {
-        if let (true, Some((pressure, _))) = (liquid.flows_in(&interface.name), &interface.pressure) {
+        let Some((pressure, in_broken)) = &interface.pressure else { continue };
+        if liquid.flows_in(&interface.name) {
             context.diagnostics.push(
                 Diagnostic::error(&pressure.place, "in an interface that [liquid] flows in")
                     .expected("one of both")
                     .remedy("leave pressure out, or the interface out of liquid.interfaces"),
             );
+        } else if *in_broken {
+            context.error(&pressure.place, "with pressure_in = \"broken\", beside [liquid]", "pressure_in = \"everywhere\"");
         }
     }
 }

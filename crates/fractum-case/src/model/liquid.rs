@@ -14,7 +14,7 @@ pub struct Liquid {
     pub interfaces: Vec<Spanned<String>>,
     /// How it flows.
     pub law: CubicLaw,
-    /// Aperture under the loads at t = 0 [m].
+    /// Aperture under the in-situ stress and the loads at t = 0 [m].
     pub aperture: f64,
     /// Change of volume over volume and pressure [1/Pa].
     pub compressibility: f64,

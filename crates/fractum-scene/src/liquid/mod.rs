@@ -26,7 +26,7 @@ pub struct LiquidSettings {
     pub interfaces: Vec<u32>,
     /// How it flows.
     pub law: CubicLaw,
-    /// Aperture of an interface under the loads before anything is injected [m].
+    /// Aperture of an interface under the in-situ stress and the loads before anything is injected [m].
     pub aperture: f64,
     /// Change of volume over volume and pressure [1/Pa].
     pub compressibility: f64,
