@@ -164,6 +164,30 @@ fn liquid_lets_an_inclined_joint_slide_as_its_effective_stress_falls() {
     }
 }
 
+/// A pressure that is given in another interface opens that, with liquid beside it or not.
+#[test]
+fn liquid_leaves_the_pressure_in_other_interfaces() {
+    let mesh = mesh_bytes(&structured_rectangle([24, 24], [4.0, 4.0], None), MshFormat::V4_1Binary);
+    let other = "[[interfaces]]\nname = \"other\"\ngroup = \"other\"\nbonded = false\nresidual_friction_angle = \"30 deg\"\n\
+                 pressure = \"10 MPa*t/1 s\"\n[in_situ]";
+    let joint = "[[mesh.joints]]\nname = \"other\"\ntable = [[\"1 m\", \"3 m\", \"1.8 m\", \"3 m\"]]\n[materials.rock]";
+    let look = "[[probes]]\nname = \"up\"\ndisplacement = { where = \"hypot(x - 1.4 m, y - 3.2 m) < 0.2 m\", along = \"y\" }\n";
+    let wet = INCLINED
+        .replace("[materials.rock]", joint)
+        .replace("[in_situ]", other)
+        .replace("[liquid]", "[liquid]\ninterfaces = [\"joint\"]")
+        + look;
+    let (first, last) = (wet.find("[liquid]").unwrap(), wet.find("[[supports]]").unwrap());
+    let dry = format!("{}{}", &wet[..first], &wet[last..]);
+    let up = |text: &str| probes(&run_with(&Workplace::with_mesh(text, &mesh), &[]), ["up"])[0];
+    let [with, without] = [up(&wet), up(&dry)];
+    assert!(without > 1e-5 && (with / without - 1.0).abs() < 1e-3, "{with} {without}");
+
+    let broken = wet.replace("10 MPa*t/1 s\"", "10 MPa*t/1 s\"\npressure_in = \"broken\"");
+    let ended = Workplace::with_mesh(&broken, &mesh).fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("beside [liquid]"), "{}", ended.stderr);
+}
+
 /// After shut-in walls take the liquid: the pressure falls to the stress across the crack, and is gone once the crack has closed.
 #[test]
 fn the_pressure_after_shut_in_falls_to_the_closing_stress() {

@@ -57,7 +57,11 @@ fn check_names(context: &mut Context<'_>, liquid: &model::Liquid) {
                     .remedy("leave pressure out, or the interface out of liquid.interfaces"),
             );
         } else if *in_broken {
-            context.error(&pressure.place, "with pressure_in = \"broken\", beside [liquid]", "pressure_in = \"everywhere\"");
+            context.error(
+                &pressure.place,
+                "with pressure_in = \"broken\", beside [liquid]",
+                "pressure_in = \"everywhere\"",
+            );
         }
     }
 }
