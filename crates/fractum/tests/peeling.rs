@@ -100,13 +100,6 @@ fn what_does_not_enter_interfaces_is_refused() {
             at_rest(LIQUID).replace("cohesion", "pressure = \"1 MPa\"\ncohesion"),
             "in an interface that [liquid] flows in",
         ),
-        (
-            at_rest(LIQUID).replace(
-                "cohesion",
-                "pressure = \"1 MPa\"\npressure_in = \"broken\"\n[[interfaces]]\nname = \"other\"\ngroup = \"other\"\ncohesion",
-            ),
-            "the name of one of",
-        ),
         (at_rest(LIQUID).replace("kind = \"static\"", "kind = \"static\"\ncontrol = \"path\""), "liquid flows in time"),
     ] {
         let ended = Workplace::with_mesh(&text, &mesh).fractum(&["check", "case.toml"]);
