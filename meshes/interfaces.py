@@ -203,6 +203,7 @@ def main():
             "crack": lambda x, y: near(y, 0.0) and x < 3.2 + 1e-9,
             "side": lambda x, y: near(x, 0.0),
             "top": lambda x, y: near(y, 40.0),
+            "right": lambda x, y: near(x, 40.0),
             "bottom": lambda x, y: near(y, -40.0),
         },
     )

@@ -143,9 +143,10 @@ impl Pumped {
 
     fn look(&self, scene: &Scene) -> Look {
         let liquid = liquid_of(scene).unwrap();
-        let area = liquid.measure(LiquidMeasure::WettedArea);
+        let area = liquid.measure(scene.interfaces(), LiquidMeasure::WettedArea);
         let length = if self.is_disc { (area / self.part() / PI).sqrt() } else { area };
-        [liquid.measure(LiquidMeasure::Aperture), liquid.measure(LiquidMeasure::Pressure) - self.stress, length]
+        let of = |measure| liquid.measure(scene.interfaces(), measure);
+        [of(LiquidMeasure::Aperture), of(LiquidMeasure::Pressure) - self.stress, length]
     }
 
     fn plane_modulus(&self) -> f64 {
@@ -275,19 +276,19 @@ fn a_crack_that_toughness_resists_follows_its_asymptote() {
         Pumped { viscosity: 1e-4, ..TOUGH },
     ] {
         let (_, found) = errors(&own, Pumped::of_toughness);
-        within(found, [0.05; 3]);
+        within(found, [0.006, 0.006, 0.05]);
     }
 }
 
 /// A quarter of a disc in space.
 const DISC: Pumped = Pumped { is_disc: true, far: 6.0, growth: 1.5, steps: 16.0, ..VISCOUS };
 
-/// Ten elements along the radius, and two in the process zone.
+/// Ten elements along the radius, and two in the process zone, which is wet and counts in the radius.
 #[test]
-fn a_disc_that_toughness_resists_misses_its_asymptote_by_no_more_than_is_told() {
+fn a_disc_that_toughness_resists_follows_its_asymptote() {
     let tough = Pumped { law: BONDED, viscosity: 1e-5, rate: 4e-6, end: 60.0, stress: 0.0, size: 0.125, ..DISC };
     let (_, found) = errors(&Pumped { length: 1.2, ..tough }, Pumped::of_toughness);
-    within(found, [0.11, 0.19, 0.05]);
+    within(found, [0.02, 0.02, 0.09]);
 }
 
 /// Without stress the liquid lags behind the tip of its crack: ahead of the front the crack is open and dry.
@@ -312,7 +313,7 @@ fn walls_that_take_nearly_all_set_the_length() {
     let (scene, seen) = own.run();
     let exact = own.rate * own.end.sqrt() / (2.0 * PI * leak_off);
     let liquid = liquid_of(&scene).unwrap();
-    let of = |measure| liquid.measure(measure);
+    let of = |measure| liquid.measure(scene.interfaces(), measure);
     let [injected, volume, leaked] = [LiquidMeasure::Injected, LiquidMeasure::Volume, LiquidMeasure::Leaked].map(of);
     println!("{} of {exact}, leaked {} of what came", seen[1][2], leaked / injected);
     assert!((seen[1][2] / exact - 1.0).abs() < 0.08 && leaked > 0.97 * injected, "{} of {exact}", seen[1][2]);
@@ -334,7 +335,7 @@ fn a_given_pressure_draws_its_rate() {
     while !solver.is_finished(&scene) {
         solver.step(&mut scene).unwrap();
     }
-    let of = |measure| liquid_of(&scene).unwrap().measure(measure);
+    let of = |measure| liquid_of(&scene).unwrap().measure(scene.interfaces(), measure);
     assert!((of(LiquidMeasure::Pressure) / 30e6 - 1.0).abs() < 1e-12);
     assert!(of(LiquidMeasure::Rate) > 0.0 && of(LiquidMeasure::Front) > 0.09, "{:e}", of(LiquidMeasure::Front));
     assert!((of(LiquidMeasure::Volume) / of(LiquidMeasure::Injected) - 1.0).abs() < 1e-9);

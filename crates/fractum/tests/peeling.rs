@@ -87,7 +87,6 @@ fn what_does_not_enter_interfaces_is_refused() {
     let pressed = "[[loads]]\nwhere = \"y < 0.01 mm\"\npressure = \"1 MPa\"\nin_cracks = true\n";
     for (text, words) in [
         (case.replace("end = \"1 ms\"", "kind = \"modes\""), "with solver.kind = \"modes\""),
-        (at_rest(&format!("[in_situ]\nstress = {{ xx = \"-1 MPa\" }}\n{LIQUID}")), "with [in_situ] and [liquid]"),
         (rest(pressed), "beside loads[].in_cracks"),
         (case.replace("crack_area = true", "crack = { measure = \"count\" }"), "interfaces are not counted as cracks"),
         (rest(LIQUID), "flows between states of equilibrium alone"),

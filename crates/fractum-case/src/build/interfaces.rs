@@ -6,9 +6,7 @@ use fractum_fem::{ElementKind, Solid};
 use fractum_mesh::{CutAlong, CutError, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{
-    CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, InterfaceLaw, Interfaces, Scene, SpringInterface,
-};
+use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
 use super::bodies::{Numbering, Part};
 use super::{Context, function};
@@ -20,6 +18,8 @@ use crate::{Diagnostic, Diagnostics, Place, nearest};
 const IN_ZONE: f64 = 3.0;
 /// How much stiffer than an element an interface is at rest that is to be stiff: it gives way by a hundredth of one.
 const FIRM: f64 = 100.0;
+/// The same of a bonded one that liquid flows in: what it gives way to the stress that presses on it counts as its opening.
+const FIRM_IF_WET: f64 = 1e4;
 /// Most that the stiffness across or along such an interface is of the other: beyond it corners of faces that are pressed together slide by turns.
 const FIRMEST: f64 = 16.0;
 
@@ -115,7 +115,7 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
         law: interface.law,
         stiffness: interface
             .stiffness
-            .or_else(|| comes_to_rest(case).then(|| firm(&scene.solid, &faces, kind, &interface.law))),
+            .or_else(|| comes_to_rest(case).then(|| firm(&scene.solid, &faces, kind, interface, case))),
     });
     let kinds: Vec<InterfaceKind> = kinds.collect();
     for (kind, interface) in kinds.iter().zip(&case.interfaces).filter(|(_, given)| given.stiffness.is_none()) {
@@ -138,9 +138,12 @@ fn comes_to_rest(case: &Case) -> bool {
     std::iter::once(case).chain(&case.later).any(|stage| stage.solver.kind == SolverKind::Static)
 }
 
-/// Stiffness of an interface at rest that is to be stiff until its strength is met [Pa/m]: with [`FIRM`] times that of an element of the stiffer side over
+/// Stiffness of an interface at rest that is to be stiff until its strength is met [Pa/m]: with [`FIRM`] or [`FIRM_IF_WET`] times that of an element of the stiffer side over
 /// the size of its smallest face, and those across and along it in the ratio f_t²/c² (at most [`FIRMEST`], either way): so opening and sliding mix as they do in motion, without a stiffness.
-fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, law: &InterfaceLaw) -> [f64; 2] {
+fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, interface: &Interface, case: &Case) -> [f64; 2] {
+    let law = &interface.law;
+    let is_wet = case.flows.liquid.as_ref().is_some_and(|liquid| liquid.flows_in(&interface.name));
+    let firmness = if is_wet && law.is_bonded() { FIRM_IF_WET } else { FIRM };
     let of = |face: &InterfaceFace| {
         let [a, b, c] = face.sides[0].map(|node| solid.reference[node as usize]);
         let size = if face.corners() == 2 { (b - a).norm() } else { (b - a).cross(&(c - a)).norm().sqrt() };
@@ -151,7 +154,7 @@ fn firm(solid: &Solid, faces: &[InterfaceFace], kind: u32, law: &InterfaceLaw) -
     let [opens, slides] = [law.tensile_strength, law.cohesion].map(|strength| strength * strength);
     let least = opens.min(slides);
     let ratio = |strength: f64| if least > 0.0 { (strength / least).min(FIRMEST) } else { 1.0 };
-    [opens, slides].map(|strength| FIRM * stiffest * ratio(strength))
+    [opens, slides].map(|strength| firmness * stiffest * ratio(strength))
 }
 
 /// What does not go together with interfaces yet.
@@ -168,13 +171,6 @@ pub(super) fn check(context: &mut Context<'_>) {
     }
     if case.solver.subcycling.is_some() {
         context.error(&place, "with solver.subcycling", "one step for all elements; remove subcycling");
-    }
-    if case.in_situ.is_some() && case.flows.liquid.is_some() {
-        context.error(
-            &place,
-            "with [in_situ] and [liquid]",
-            "solids that begin without stress; load them in the run instead",
-        );
     }
     if case.flows.heat.is_some() {
         context.error(&place, "with [heat]", "solids without heat: none flows across interfaces");

@@ -49,12 +49,18 @@ fn check_names(context: &mut Context<'_>, liquid: &model::Liquid) {
         });
     }
     for interface in &context.case.interfaces {
-        let flows = liquid.interfaces.is_empty() || liquid.interfaces.iter().any(|name| name.value == interface.name);
-        if let (true, Some((pressure, _))) = (flows, &interface.pressure) {
+        let Some((pressure, in_broken)) = &interface.pressure else { continue };
+        if liquid.flows_in(&interface.name) {
             context.diagnostics.push(
                 Diagnostic::error(&pressure.place, "in an interface that [liquid] flows in")
                     .expected("one of both")
                     .remedy("leave pressure out, or the interface out of liquid.interfaces"),
+            );
+        } else if *in_broken {
+            context.error(
+                &pressure.place,
+                "with pressure_in = \"broken\", beside [liquid]",
+                "pressure_in = \"everywhere\"",
             );
         }
     }
@@ -68,8 +74,8 @@ pub(super) fn with_liquid(context: &mut Context<'_>, scene: Scene, numbering: &N
         context.error(&liquid.place, "in solids that may be damaged", remedy);
         return scene;
     }
-    let flows = |name: &str| liquid.interfaces.is_empty() || liquid.interfaces.iter().any(|own| own.value == name);
-    let kinds = (0u32..).zip(&context.case.interfaces).filter(|(_, own)| flows(&own.name)).map(|(kind, _)| kind);
+    let kinds = (0u32..).zip(&context.case.interfaces);
+    let kinds = kinds.filter(|(_, own)| liquid.flows_in(&own.name)).map(|(kind, _)| kind);
     let kinds: Vec<u32> = kinds.collect();
     let injections = liquid.injections.iter().map(|injection| {
         let value = function(&injection.value.value);

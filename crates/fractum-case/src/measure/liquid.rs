@@ -25,7 +25,7 @@ impl Measure for LiquidIn {
     const KEY: &'static str = "liquid";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].liquid", K::Choice(names::<LiquidMeasure>), "", "A number about the liquid in interfaces. Where it is put in, over all injections: mean pressure, mean aperture, or rate. Of all of it: volume injected so far, volume in the interfaces, volume that has leaked, area that is wet, or distance of the front from the injections. NaN without liquid"),
+        key("probes[].liquid", K::Choice(names::<LiquidMeasure>), "", "A number about the liquid in interfaces. Where it is put in, over all injections: mean pressure, mean aperture, or rate. Of all of it: volume injected so far, volume in the interfaces, volume that has leaked, area that is wet, the process zone included, or distance of the front from the injections. NaN without liquid"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {
@@ -51,7 +51,7 @@ struct OfLiquid(LiquidMeasure);
 
 impl Probe for OfLiquid {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        liquid_of(probed.scene).map_or(f64::NAN, |liquid| liquid.measure(self.0))
+        liquid_of(probed.scene).map_or(f64::NAN, |liquid| liquid.measure(probed.scene.interfaces(), self.0))
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

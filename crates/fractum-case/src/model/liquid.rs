@@ -14,7 +14,7 @@ pub struct Liquid {
     pub interfaces: Vec<Spanned<String>>,
     /// How it flows.
     pub law: CubicLaw,
-    /// Aperture under the loads at t = 0 [m].
+    /// Aperture under the in-situ stress and the loads at t = 0 [m].
     pub aperture: f64,
     /// Change of volume over volume and pressure [1/Pa].
     pub compressibility: f64,
@@ -22,6 +22,13 @@ pub struct Liquid {
     pub leak_off: f64,
     /// Where it comes in, in the order of the file; at least one.
     pub injections: Vec<LiquidInjection>,
+}
+
+impl Liquid {
+    /// Whether it flows in an interface of some name.
+    pub fn flows_in(&self, interface: &str) -> bool {
+        self.interfaces.is_empty() || self.interfaces.iter().any(|own| own.value == interface)
+    }
 }
 
 /// A place at which liquid comes in.

@@ -10,7 +10,7 @@ use super::{Cluster, InterfaceKind, Interfaces, Point};
 /// How much stiffer than an element the springs are that keep the sides together until the state of the start is known.
 const FIRM: f64 = 1e4;
 /// What tractions may exceed the strength by, over the largest traction: the state of the start is not known better.
-const ROUNDING: f64 = 1e-6;
+const ROUNDING: f64 = 1e-5;
 
 /// An interface that cannot bear the state of the start.
 pub(crate) struct Overloaded {

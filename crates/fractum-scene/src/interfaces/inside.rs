@@ -38,6 +38,19 @@ impl Interfaces {
         Interfaces { pressures, ..self }
     }
 
+    /// Adds the forces of the pressures inside of them at a time, with the strengths of the last state.
+    ///
+    /// - `forces`: on the nodes [N]
+    pub(crate) fn push_apart(&self, time: f64, forces: &mut [Vec3]) {
+        for point in self.clusters.iter().flat_map(|cluster| &cluster.points).filter(|point| point.area > 0.0) {
+            let Some(pressure) = pressure_in(&self.pressures, point.kind) else { continue };
+            let thrust = pressure.thrust(point, point.state.residual, time);
+            let [a, b] = point.pair.map(|node| node as usize);
+            forces[a] -= thrust;
+            forces[b] += thrust;
+        }
+    }
+
     /// Takes over the pressures of the same interfaces in a later stage.
     pub(crate) fn take_pressures(&mut self, next: Interfaces) {
         self.pressures = next.pressures;

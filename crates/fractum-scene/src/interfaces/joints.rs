@@ -25,9 +25,18 @@ pub(crate) struct JointPoint {
     pub(crate) kind: u32,
     /// Rows: normal and two directions across, for the jump from the first node of the pair to the second.
     pub(crate) frame: Mat3,
+    /// Jump of the pair at which it bears nothing: that of the state under in-situ stress, less what its springs have given way to [m].
+    pub(crate) unloaded: Vec3,
     /// Area [m²].
     pub(crate) area: f64,
     pub(crate) interface: SpringInterface,
+}
+
+impl JointPoint {
+    /// A jump of the pair along the rows of its frame.
+    pub(crate) fn local(&self, jump: &Vec3) -> Vec3 {
+        self.frame * (jump - self.unloaded)
+    }
 }
 
 impl Interfaces {
@@ -49,6 +58,7 @@ impl Interfaces {
                     at: (number, index),
                     kind: point.kind,
                     frame: point.frame * sign,
+                    unloaded: point.frame.tr_mul(&point.offset) * sign,
                     area: point.area,
                     interface: SpringInterface { law: kind.law, stiffness },
                 });

@@ -26,7 +26,7 @@ pub struct LiquidSettings {
     pub interfaces: Vec<u32>,
     /// How it flows.
     pub law: CubicLaw,
-    /// Aperture of an interface under the loads before anything is injected [m].
+    /// Aperture of an interface under the in-situ stress and the loads before anything is injected [m].
     pub aperture: f64,
     /// Change of volume over volume and pressure [1/Pa].
     pub compressibility: f64,
@@ -88,7 +88,7 @@ pub struct LiquidState {
     pub(crate) leaked: Vec<f64>,
     /// Aperture of each point, with its rough walls closed where it is negative [m].
     pub(crate) aperture: Vec<f64>,
-    /// How far each point was closed by the loads before any injection, ≤ 0 [m].
+    /// Normal jump of each point from which its aperture counts: 0, or less where the loads before any injection had closed it; under in-situ stress that of its start [m].
     pub(crate) closed: Vec<f64>,
     /// Pairs of nodes whose jump is an unknown, ascending.
     pub(crate) active: Vec<u32>,

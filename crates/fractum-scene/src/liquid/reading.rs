@@ -2,6 +2,7 @@
 
 use fractum_math::Vec3;
 
+use super::network::WetPoint;
 use super::{Liquid, LiquidState};
 use crate::interfaces::Interfaces;
 
@@ -42,10 +43,17 @@ const OVERDRAWN: f64 = 1e-9;
 
 impl Liquid {
     /// Area of all cells, if liquid is in each [m²].
-    pub(crate) fn area_if_all_wet(&self) -> Option<f64> {
+    pub(crate) fn area_if_all_wet(&self, interfaces: &Interfaces) -> Option<f64> {
         let cells = &self.network.cells;
-        let all_wet = (0..cells.len()).all(|cell| self.filled(cell) > 0.0);
+        let all_wet = (0..cells.len()).all(|cell| self.wet_area(interfaces, cell) > 0.0);
         all_wet.then(|| cells.iter().map(|cell| cell.area).sum())
+    }
+
+    /// Area of a cell that liquid is in: that at the tip presses on a cell that is still whole [m²].
+    fn wet_area(&self, interfaces: &Interfaces, cell: usize) -> f64 {
+        let points = self.network.cells[cell].points.iter().map(|&point| &self.network.points[point as usize]);
+        let lets_in = |point: &&WetPoint| point.is_permeable || interfaces.state_of(point.at).residual < 1.0;
+        self.filled(cell) * points.filter(lets_in).map(|point| point.area).sum::<f64>()
     }
 
     /// Volume that was drawn and was not there, if there is any [m³].
@@ -81,7 +89,7 @@ impl Liquid {
     }
 
     /// Something about it.
-    pub fn measure(&self, measure: LiquidMeasure) -> f64 {
+    pub fn measure(&self, interfaces: &Interfaces, measure: LiquidMeasure) -> f64 {
         let at = || self.injected_at.iter().flatten().map(|(cell, _)| *cell as usize);
         let area = |cell: usize| self.network.cells[cell].area;
         let mean = |of: &dyn Fn(usize) -> f64| {
@@ -95,11 +103,11 @@ impl Liquid {
             LiquidMeasure::Injected => self.state.injected,
             LiquidMeasure::Volume => self.state.amount.iter().sum(),
             LiquidMeasure::Leaked => self.state.leaked.iter().sum(),
-            LiquidMeasure::WettedArea => cells.map(|cell| area(cell) * self.filled(cell)).sum(),
+            LiquidMeasure::WettedArea => cells.map(|cell| self.wet_area(interfaces, cell)).sum(),
             LiquidMeasure::Front => {
                 let places: Vec<Vec3> = at().map(|cell| self.network.cells[cell].place).collect();
                 let middle = places.iter().sum::<Vec3>() / places.len().max(1) as f64;
-                let wet = cells.filter(|&cell| self.filled(cell) > 0.0);
+                let wet = cells.filter(|&cell| self.wet_area(interfaces, cell) > 0.0);
                 wet.map(|cell| (self.network.cells[cell].place - middle).norm()).fold(0.0, f64::max)
             }
         }

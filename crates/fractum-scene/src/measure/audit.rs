@@ -165,7 +165,7 @@ fn look_at_interfaces(scene: &mut Scene) {
 
 fn look_at_liquid(scene: &mut Scene) {
     let Some(liquid) = scene.optional.liquid.as_deref() else { return };
-    let (full, overdrawn) = (liquid.area_if_all_wet(), liquid.overdrawn());
+    let (full, overdrawn) = (liquid.area_if_all_wet(scene.interfaces()), liquid.overdrawn());
     for (what, found) in [(Notice::LiquidAtEnd, full), (Notice::Overdrawn, overdrawn)] {
         if let Some(value) = found {
             scene.note(what, Site::Scene, value);

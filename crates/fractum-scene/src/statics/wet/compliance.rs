@@ -14,6 +14,8 @@ pub(super) struct Compliance {
     /// Unknown components of a displacement.
     pub(super) axes: usize,
     springs: Vec<Spring>,
+    /// Force of each spring where its pair has no jump [N].
+    without_jump: Vec<Vec3>,
     prepared: bool,
     /// Jumps of all pairs under a unit force between the nodes of one, by pair and axis; none that nobody has asked for.
     columns: Vec<Option<Vec<Vec3>>>,
@@ -32,9 +34,11 @@ impl Compliance {
         let joints = scene.interfaces().joints();
         let axes = if scene.solid.is_plane() { 2 } else { 3 };
         let spring = |joint: &Joint| Spring::between(joint.pair, joint.points.iter().map(spring_of).sum());
-        let (springs, columns) = (joints.iter().map(spring).collect(), vec![None; axes * joints.len()]);
+        let without_jump = |joint: &Joint| joint.points.iter().map(|own| spring_of(own) * own.unloaded).sum();
+        let (springs, without_jump) = (joints.iter().map(spring).collect(), joints.iter().map(without_jump).collect());
+        let columns = vec![None; axes * joints.len()];
         let zero = vec![Vec3::zeros(); scene.solid.reference.len()];
-        Compliance { joints, axes, springs, prepared: false, columns, force: zero.clone(), field: zero }
+        Compliance { joints, axes, springs, without_jump, prepared: false, columns, force: zero.clone(), field: zero }
     }
 
     /// Factorises the stiffness, once.
@@ -64,11 +68,11 @@ impl Compliance {
         outer: &[Vec3],
         between: impl Iterator<Item = (u32, Vec3)>,
     ) -> Result<(), SparseError> {
-        let Compliance { joints, springs, force, field: change, .. } = self;
+        let Compliance { joints, springs, without_jump, force, field: change, .. } = self;
         scene.solid.secant_force(&scene.solid.cell_damage(), field, force);
         force.iter_mut().zip(outer).for_each(|(force, outer)| *force = outer - *force);
-        for spring in springs.iter() {
-            spring.push(-(spring.stiffness * spring.of(field)), force);
+        for (spring, without_jump) in springs.iter().zip(without_jump) {
+            spring.push(*without_jump - spring.stiffness * spring.of(field), force);
         }
         for (joint, pushed) in between {
             push(&joints[joint as usize], pushed, force);

@@ -98,7 +98,8 @@ impl StaticSolver {
     ) -> Result<Option<(Vec<Vec3>, LiquidState, usize)>, StepError> {
         let Wet { compliance, newton } = wet;
         let apart = |scene: &Scene, error| come_apart(scene, error);
-        let boundary = boundary_at(scene, scene.clock.time, time);
+        let mut boundary = boundary_at(scene, scene.clock.time, time);
+        scene.interfaces().push_apart(time, &mut boundary.force);
         let mut field = boundary.displacement.clone();
         compliance
             .displace(scene, &mut self.system, &mut field, &boundary.force, std::iter::empty())
@@ -122,7 +123,7 @@ impl StaticSolver {
             compliance
                 .displace(scene, &mut self.system, &mut field, &boundary.force, pushed.into_iter())
                 .map_err(|error| apart(scene, error))?;
-            return Ok(Some((field, trial.into_state(scene, &step), iterations)));
+            return Ok(Some((field, trial.into_state(scene, compliance, &step), iterations)));
         }
         Ok(None)
     }

@@ -199,8 +199,9 @@ impl Newton {
             let amount = comes - trial.taken(index, comes);
             let give = give(compliance, network.cells[index].points.iter().map(|&p| &network.points[p as usize]));
             let missing = (room * (1.0 + compressibility * pressure) - amount) / give;
-            // A full cell stays full while it pushes: how its room grows, it cannot know before it opens.
-            if pressure <= 0.0 && missing >= 0.0 {
+            // A full cell stays full while it pushes: how its room grows, it cannot know before it opens. What has closed more than at the start has less
+            // than no room.
+            if pressure <= 0.0 && (missing >= 0.0 || amount <= 0.0) {
                 self.right[row] = pressure * places.scale;
                 self.matrix.add(row, row, 1.0);
                 continue;

@@ -53,14 +53,19 @@ pub(super) struct Way<'a> {
 pub(super) fn more(interfaces: &Interfaces, joint: &Joint, jump: &Vec3) -> (Vec3, Mat3) {
     let (mut force, mut slope) = (Vec3::zeros(), Mat3::zeros());
     for point in &joint.points {
-        let (local, state) = (point.frame * jump, interfaces.state_of(point.at));
+        let (local, state) = (point.local(jump), interfaces.state_of(point.at));
         let traction = point.interface.load(local, &mut state.clone()).traction();
         let spring = spring_of(point);
-        force += spring * jump - point.frame.tr_mul(&traction) * point.area;
+        force += spring * (jump - point.unloaded) - point.frame.tr_mul(&traction) * point.area;
         let tangent = point.interface.jacobian(&local, state);
         slope += spring - point.frame.transpose() * tangent * point.frame * point.area;
     }
     (force, slope)
+}
+
+/// A wet point among those of its pair.
+fn of_pair<'a>(compliance: &'a Compliance, point: &WetPoint) -> Option<&'a JointPoint> {
+    compliance.joints[point.joint as usize].points.iter().find(|own| own.at == point.at)
 }
 
 fn liquid(scene: &Scene) -> &Liquid {
@@ -131,18 +136,16 @@ impl Trial {
             if point.is_permeable {
                 return true;
             }
-            let joint = &compliance.joints[point.joint as usize];
-            let own = joint.points.iter().find(|own| own.at == point.at);
-            own.is_some_and(|own| {
+            of_pair(compliance, point).is_some_and(|own| {
                 let mut state = *scene.interfaces().state_of(own.at);
-                own.interface.load(own.frame * self.jump[point.joint as usize], &mut state);
+                own.interface.load(own.local(&self.jump[point.joint as usize]), &mut state);
                 state.residual < 1.0
             })
         };
         let open: Vec<bool> = network.points.iter().map(lets_in).collect();
         let mut more = false;
         for (slit, is_open) in network.slits.iter().zip(&mut self.is_open).filter(|(_, is_open)| !**is_open) {
-            *is_open = slit.points.iter().flatten().all(|&point| open[point as usize]);
+            *is_open = slit.points.iter().flatten().any(|&point| open[point as usize]);
             more |= *is_open;
         }
         more
@@ -180,8 +183,8 @@ impl Trial {
                 let (force, _) = more(scene.interfaces(), joint, &self.jump[index as usize]);
                 beyond.push((index, force.norm()));
             }
-            let spring = joint.points.iter().map(spring_of).sum::<Mat3>();
-            largest = largest.max((spring * self.jump[index as usize]).norm());
+            let pull = |own: &JointPoint| spring_of(own) * (self.jump[index as usize] - own.unloaded);
+            largest = largest.max(joint.points.iter().map(pull).sum::<Vec3>().norm());
         }
         self.active.extend(beyond.iter().filter(|(_, force)| *force > MORE * largest).map(|(index, _)| *index));
         let mut more_slits = false;
@@ -228,7 +231,7 @@ impl Trial {
             let jump = self.jump[*joint as usize];
             let bears = |own: &JointPoint| {
                 let traction =
-                    own.interface.load(own.frame * jump, &mut scene.interfaces().state_of(own.at).clone()).traction();
+                    own.interface.load(own.local(&jump), &mut scene.interfaces().state_of(own.at).clone()).traction();
                 traction.x.abs().max(own.interface.law.tensile_strength)
             };
             compliance.joints[*joint as usize].points.iter().map(bears).fold(0.0, f64::max)
@@ -300,11 +303,17 @@ impl Trial {
     }
 
     /// The liquid at the end of the step.
-    pub(super) fn into_state(self, scene: &Scene, step: &WetStep) -> LiquidState {
+    pub(super) fn into_state(self, scene: &Scene, compliance: &Compliance, step: &WetStep) -> LiquidState {
         let own = liquid(scene);
         let mut state = self.before.clone();
         if step.dt == 0.0 {
-            let closed = |point: &WetPoint| point.normal.dot(&self.jump[point.joint as usize]).min(0.0);
+            let closed = |point: &WetPoint| {
+                let [jump, unloaded] = [
+                    self.jump[point.joint as usize],
+                    of_pair(compliance, point).map_or_else(Vec3::zeros, |own| own.unloaded),
+                ];
+                point.normal.dot(&unloaded) + point.normal.dot(&(jump - unloaded)).min(0.0)
+            };
             state.closed = own.network.points.iter().map(closed).collect();
             state.has_begun = true;
         }
