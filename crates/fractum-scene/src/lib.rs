@@ -23,6 +23,7 @@ mod facet;
 mod fragment;
 mod gas;
 mod heat;
+mod inlet;
 mod interfaces;
 mod leave;
 mod ledger;
@@ -64,6 +65,7 @@ pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource,
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
+pub use inlet::{Arrivals, Entered, EntryMotion, Inlet};
 pub use interfaces::{FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use liquid::{Injection, InjectionDrive, Liquid, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState};

@@ -115,6 +115,11 @@ impl SolidSurface {
         &self.contacts
     }
 
+    /// Its facets, where they were when forces were last found.
+    pub(super) fn ground(&self) -> Surface<'_> {
+        Surface::Deformable { surface: &self.mesh, points: &self.points, velocity: &self.velocity }
+    }
+
     pub(super) fn mesh(&self) -> &FacetMesh {
         &self.mesh
     }
@@ -155,8 +160,8 @@ impl SolidSurface {
     ///
     /// - `radii`: of the particles; negative ones of those that have left [m]
     pub(super) fn look_again(&mut self, radii: &[f64]) {
-        let gone = self.felt.iter_mut().zip(radii).filter(|(_, radius)| **radius < 0.0);
-        gone.for_each(|(felt, radius)| *felt = *radius);
+        let changed = self.felt.iter_mut().zip(radii).filter(|(felt, radius)| **felt < 0.0 || **radius < 0.0);
+        changed.for_each(|(felt, radius)| *felt = *radius);
         self.contacts.look_again();
     }
 
