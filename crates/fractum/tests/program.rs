@@ -17,6 +17,7 @@ mod fragments;
 mod gallery;
 mod gauges;
 mod heat;
+mod inlets;
 mod interfaces;
 mod interrupt;
 mod jointed;
