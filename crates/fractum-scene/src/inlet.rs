@@ -13,11 +13,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::clock::ThisStep;
 use crate::coupling::Debris;
-use crate::scene::Scene;
+use crate::scene::{Optional, Scene};
 use crate::watch::{Notice, Site};
 
-/// Steps between two looks for particles that are due: each look that lets one in renews the searches of contact.
-const STEPS_BETWEEN_ENTRIES: u64 = 10;
+/// Steps between two looks for a free place while particles wait.
+const STEPS_BETWEEN_LOOKS: u64 = 10;
 /// Places that are tried for a particle at a look before it waits.
 const TRIES: u64 = 200;
 /// Particles that may wait: the rate is kept within one.
@@ -69,6 +69,8 @@ pub(crate) struct InletState {
     places: Vec<Vec3>,
     /// Places that were tried so far.
     tried: u64,
+    /// Whether particles found no free place at the last look.
+    is_full: bool,
 }
 
 /// What has come into the run.
@@ -151,37 +153,34 @@ impl Scene {
 
 /// Lets particles come in that are due, between the forces of tⁿ and the kick.
 pub(crate) fn let_particles_enter(scene: &mut Scene, step: &ThisStep) {
-    if scene.optional.inlets.is_empty() || step.is_first || !scene.clock.step.is_multiple_of(STEPS_BETWEEN_ENTRIES) {
+    if scene.optional.inlets.is_empty() || step.is_first {
         return;
     }
     let mut waiting = 0;
     let mut inlets = std::mem::take(&mut scene.optional.inlets);
-    let before = scene.optional.entered.particles;
     for inlet in &mut inlets {
         let missing = inlet.due_until(step.time) - inlet.state.places.len();
-        if missing == 0 {
-            continue;
-        }
-        let still = missing - enter(scene, inlet, missing, step.dt_before);
+        let looks = !inlet.state.is_full || scene.clock.step.is_multiple_of(STEPS_BETWEEN_LOOKS);
+        let found = if missing > 0 && looks { enter(scene, inlet, missing, step.dt_before) } else { 0 };
+        let still = missing - found;
+        inlet.state.is_full = still > 0;
         if still > MAY_WAIT {
             scene.note(Notice::InletBlocked, Site::Particle(inlet.outside().start as u32), still as f64);
         }
         waiting += still;
     }
-    scene.optional.inlets = inlets;
-    let entered = &mut scene.optional.entered;
+    let Scene { optional: Optional { inlets: all, entered, .. }, .. } = scene;
+    *all = inlets;
     (entered.waiting, entered.most_waiting) = (waiting, entered.most_waiting.max(waiting));
-    if entered.particles > before {
-        scene.contacts.look_again(&scene.bonded.particles.radius);
-    }
 }
 
 /// Lets at most so many particles in; returns how many had a place.
 fn enter(scene: &mut Scene, inlet: &mut Inlet, most: usize, dt: f64) -> usize {
     let Inlet { arrivals: Arrivals { bounds, place, .. }, largest, state, .. } = inlet;
-    let mut obstacles = Obstacles::around(scene, bounds, *largest);
+    let clearance = scene.contacts.clearance();
+    let mut obstacles = Obstacles::around(scene, bounds, *largest + clearance);
     let first = inlet.range.start + state.places.len();
-    let mut places = Vec::new();
+    let (mut places, mut is_close) = (Vec::new(), false);
     for i in first..first + most {
         let radius = scene.bonded.particles.radius[i].abs();
         let found = (0..TRIES).find_map(|_| {
@@ -189,14 +188,16 @@ fn enter(scene: &mut Scene, inlet: &mut Inlet, most: usize, dt: f64) -> usize {
             Some(place(radius, state.tried)).filter(|x| obstacles.leave_free(x, radius))
         });
         let Some(found) = found else { break };
+        is_close |= !obstacles.leave_free(&found, radius + clearance);
         obstacles.balls.push((found, radius));
         places.push(found);
     }
-    let Scene { bonded, optional: crate::scene::Optional { entered, .. }, books, .. } = scene;
+    let Scene { bonded, contacts, optional: Optional { entered, .. }, books, .. } = scene;
     for (i, place) in (first..).zip(&places) {
         let all = &mut bonded.particles;
         all.put_in(i, *place);
         bonded.reference[i] = *place;
+        contacts.admit_particle(i as u32, place, all.radius[i]);
         // The velocities that are asked for are those of tⁿ, and the scene has those of the half step before.
         let [velocity, spin] = (inlet.motion)(place, all.radius[i]);
         let Particles { force, moment, mass, inertia, .. } = &*all;
@@ -210,6 +211,9 @@ fn enter(scene: &mut Scene, inlet: &mut Inlet, most: usize, dt: f64) -> usize {
         entered.particles += 1;
         entered.mass += mass;
         entered.momentum += velocity * mass;
+    }
+    if is_close {
+        contacts.look_again(&bonded.particles.radius);
     }
     let count = places.len();
     inlet.state.places.append(&mut places);
@@ -227,13 +231,13 @@ struct Obstacles<'a> {
 }
 
 impl<'a> Obstacles<'a> {
-    /// - `largest`: radius of what shall come in [m]
+    /// - `largest`: radius of what shall come in, with the clearance that it is asked about [m]
     fn around(scene: &'a Scene, [low, high]: &[Vec3; 2], largest: f64) -> Obstacles<'a> {
         let Scene { bonded, debris, solid, contacts, .. } = scene;
         let reach = contacts.reach();
         let near = |centre: &Vec3, radius: f64| {
             let beyond = centre - centre.zip_zip_map(low, high, |c, a, b| c.clamp(a, b));
-            beyond.norm() < radius + reach
+            beyond.norm() < radius + largest + reach
         };
         let Particles { position, radius, .. } = &bonded.particles;
         let particles = position.iter().copied().zip(radius.iter().copied()).filter(|(_, radius)| *radius >= 0.0);

@@ -69,7 +69,7 @@ fn number(of: &Value, path: &[&str]) -> f64 {
 fn a_stream_has_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     let place = stream("inlet = { mass_rate = \"60 g/s\", from = \"5 ms\", until = \"80 ms\" }", FLOOR, "0.12 s");
     let one = run(&place, "one", "1");
-    assert!(number(&one, &["counts", "contacts"]) > 100.0, "{}", one["counts"]);
+    assert!(number(&one, &["counts", "contacts"]) > 10.0, "{}", one["counts"]);
     assert!(number(&one, &["energy", "residual_max_relative"]) < 1e-3, "{}", one["energy"]);
     for threads in ["2", "7"] {
         let other = run(&place, threads, threads);
@@ -125,8 +125,8 @@ fn a_particle_that_comes_in_falls_freely_with_the_velocity_it_is_given() {
             continue;
         }
         seen += 1;
-        // Velocities are those of the half step before.
-        let speed = row[2] + 0.5 * 9.81 * row[1];
+        // Velocities are those of the half step behind the instant.
+        let speed = row[2] - 0.5 * 9.81 * row[1];
         assert!((speed * speed / (0.25 + 2.0 * 9.81 * row[3]) - 1.0).abs() < 1e-9, "{row:?}");
     }
     assert!(seen > 80);
@@ -158,11 +158,12 @@ fn particles_without_a_free_place_wait_and_are_told() {
     let lid = lid.replace("\"0 mm\"]", "\"45 mm\"]").replace("\"61 mm\"", "\"16 mm\"");
     let place = stream("inlet = { mass_rate = \"400 g/s\", until = \"50 ms\" }", &lid, "60 ms");
     let run = run(&place, "out", "2");
-    let told = run["warnings"].as_array().unwrap().iter().filter(|warning| warning["code"] == "inlet-blocked");
-    let told: Vec<String> = told.map(|warning| warning["text"].as_str().unwrap().to_owned()).collect();
-    // Before the run and in it.
-    assert_eq!(told.len(), 2, "{}", run["warnings"]);
-    assert!(told[0].contains("the inlet has room for about"), "{told:?}");
+    let told = |code: &str| {
+        let mut told = run["warnings"].as_array().unwrap().iter().filter(|warning| warning["code"] == code);
+        told.next().map_or("", |warning| warning["text"].as_str().unwrap()).to_owned()
+    };
+    assert!(told("inlet-rate").contains("the inlet has room for about"), "{}", run["warnings"]);
+    assert!(told("inlet-blocked").contains("its inlet has no free place"), "{}", run["warnings"]);
     assert!(number(&run, &["counts", "waiting_particles"]) > 100.0, "{}", run["counts"]);
     assert!(number(&run, &["counts", "most_waiting_particles"]) >= number(&run, &["counts", "waiting_particles"]));
     // None came in where another was: nothing was pressed apart.
@@ -186,7 +187,7 @@ fn streams_that_cannot_be_are_refused_with_their_place() {
     ];
     for (inlet, expected) in cases {
         let ended = stream(inlet, "", "0.1 s").fractum(&["check", "case.toml"]);
-        assert_eq!(ended.code, Some(2), "{inlet}: {}", ended.stderr);
+        assert_eq!(ended.code, Some(1), "{inlet}: {}", ended.stderr);
         assert!(ended.stderr.contains(expected) && ended.stderr.contains("case.toml:"), "{inlet}: {}", ended.stderr);
     }
     let inlet = "inlet = { mass_rate = \"2 g/s\", until = \"1 s\" }";
@@ -196,16 +197,16 @@ fn streams_that_cannot_be_are_refused_with_their_place() {
     ];
     for (more, expected) in more {
         let ended = stream(inlet, more, "0.1 s").fractum(&["check", "case.toml"]);
-        assert_eq!(ended.code, Some(2), "{more}: {}", ended.stderr);
+        assert_eq!(ended.code, Some(1), "{more}: {}", ended.stderr);
         assert!(ended.stderr.contains(expected), "{more}: {}", ended.stderr);
     }
     let far = STREAM.replace("INLET", inlet).replace("MORE", "").replace("END", "0.1 s");
     let far = far.replace("[solver]\n", "[solver]\ndomain = { min = [0, 0, 0], max = [\"1 mm\", \"1 mm\", \"1 mm\"] }\n");
     let ended = Workplace::new(&far).fractum(&["check", "case.toml"]);
-    assert!(ended.code == Some(2) && ended.stderr.contains("outside at the start"), "{}", ended.stderr);
+    assert!(ended.code == Some(1) && ended.stderr.contains("outside at the start"), "{}", ended.stderr);
     // Too small for its particles.
     let small = STREAM.replace("INLET", inlet).replace("MORE", "").replace("END", "0.1 s");
     let small = small.replace("\"20 mm\", \"10 mm\"]", "\"20 mm\", \"1 mm\"]");
     let ended = Workplace::new(&small).fractum(&["check", "case.toml"]);
-    assert!(ended.code == Some(2) && ended.stderr.contains("no room for its largest"), "{}", ended.stderr);
+    assert!(ended.code == Some(1) && ended.stderr.contains("no room for its largest"), "{}", ended.stderr);
 }

@@ -8,8 +8,9 @@ use super::Context;
 use crate::model::{Body, BodyKind, Case, LoadKind, LooseBody, LooseSource, Rate, Region, SolverKind, Stream};
 use crate::{Diagnostic, Place, Spanned};
 
-/// Share of its volume that an inlet fills at most with particles at places by chance that are free.
-const REACH: f64 = 0.25;
+/// Solid fraction of the stream that leaves an inlet which is asked for more than it can let in: 0.30 to 0.37 were found for boxes from
+/// rest to 3 m/s.
+const REACH: f64 = 0.3;
 
 /// Bodies whose particles come in through an inlet, with its stream and the place of its rate.
 fn streams(case: &Case) -> impl Iterator<Item = (&Body, &LooseBody, &Stream, &Place)> {
@@ -52,7 +53,7 @@ pub(super) fn doubts(case: &Case) -> Vec<Diagnostic> {
             Rate::Mass(_) => quantity(volume_rate * density, "kg/s"),
             Rate::Number(_) => quantity(volume_rate / stream.sizes.mean_volume(), "1/s"),
         };
-        let warning = |found: String| Diagnostic::warning(Code::InletBlocked, place, found);
+        let warning = |found: String| Diagnostic::warning(Code::InletRate, place, found);
         let Some(crossing) = crossing_time(case, body, stream) else {
             let all = stream.count(density) * stream.sizes.mean_volume();
             let found = "fills an inlet out of which nothing moves its particles".to_owned();

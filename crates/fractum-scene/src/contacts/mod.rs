@@ -90,6 +90,8 @@ pub struct Contacts {
     flat: FlatBodies,
     /// Largest radius of a particle [m].
     largest_radius: f64,
+    /// Skin of the searches [m].
+    skin: f64,
     /// Forces between bodies that probes ask for [N].
     watched: Vec<(ContactProbe, f64)>,
 }
@@ -198,6 +200,7 @@ impl Contacts {
             rayleigh_frequency,
             flat: FlatBodies::default(),
             largest_radius: radii().fold(0.0, f64::max),
+            skin,
             watched: Vec::new(),
         };
         contacts.reaching()
@@ -226,6 +229,22 @@ impl Contacts {
     pub(crate) fn reach(&self) -> f64 {
         let on_tools = self.on_tools.iter().map(|(_, pairs)| self.reach_of(pairs));
         on_tools.fold(self.reach_of(&self.pairs), f64::max)
+    }
+
+    /// Distance from everything at which a particle that comes in asks for no search before the next one: what moves uses up two skins
+    /// at most until then [m].
+    pub(crate) fn clearance(&self) -> f64 {
+        2.0 * self.skin
+    }
+
+    /// Takes a particle that was not there at a place with [clearance](Contacts::clearance).
+    pub(crate) fn admit_particle(&mut self, particle: u32, place: &Vec3, radius: f64) {
+        self.among.iter_mut().for_each(|among| among.admit(particle, place));
+        self.nodes.debris.iter_mut().for_each(|among| among.admit_particle(particle, place));
+        for (rigid_body, (contacts, _)) in self.rigid_bodies.iter().zip(&mut self.on_tools) {
+            contacts.admit(&rigid_body.ground(), particle, place);
+        }
+        self.solids.iter_mut().for_each(|ground| ground.admit_particle(particle, place, radius));
     }
 
     /// Rigid bodies and the surfaces of solids, where they were when forces were last found.

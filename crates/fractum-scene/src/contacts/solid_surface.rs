@@ -115,6 +115,15 @@ impl SolidSurface {
         &self.contacts
     }
 
+    /// Takes a particle that was not there at a place away from it.
+    ///
+    /// - `radius`: of the particle [m]
+    pub(super) fn admit_particle(&mut self, particle: u32, place: &Vec3, radius: f64) {
+        let SolidSurface { mesh, points, velocity, contacts, felt, .. } = self;
+        felt.get_mut(particle as usize).into_iter().for_each(|felt| *felt = radius);
+        contacts.admit(&Surface::Deformable { surface: mesh, points, velocity }, particle, place);
+    }
+
     /// Its facets, where they were when forces were last found.
     pub(super) fn ground(&self) -> Surface<'_> {
         Surface::Deformable { surface: &self.mesh, points: &self.points, velocity: &self.velocity }
