@@ -140,12 +140,12 @@ fn a_floor_bears_all_weight_and_the_momentum_that_comes_in() {
     let place = stream(
         "initial_velocity = { z = \"-1 m/s\" }\ninlet = { mass_rate = \"50 g/s\", until = \"1 s\" }",
         FLOOR,
-        "0.3 s",
+        "0.2 s",
     );
     let run = run(&place, "out", "1");
     assert!(number(&run, &["energy", "residual_max_relative"]) < 1e-3, "{}", run["energy"]);
     let rows = history(&place, "out", &["time", "entered_mass", "floor_force"]);
-    let later: Vec<_> = rows.iter().filter(|row| row[0] > 0.1).collect();
+    let later: Vec<_> = rows.iter().filter(|row| row[0] > 0.08).collect();
     let mean = |of: &dyn Fn(&[f64]) -> f64| later.iter().map(|row| of(row)).sum::<f64>() / later.len() as f64;
     let (borne, expected) = (mean(&|row| row[2]), mean(&|row| 9.81 * row[1]) + 50e-3 * 1.0);
     assert!((borne / expected - 1.0).abs() < 0.03, "{borne} for {expected}");
@@ -181,7 +181,6 @@ fn streams_that_cannot_be_are_refused_with_their_place() {
         ("inlet = { mass_rate = \"2 g/s\" }", "has no until"),
         ("inlet = { mass_rate = \"2 g/s\", from = \"1 s\", until = \"0.5 s\" }", "is not after from"),
         ("inlet = { mass_rate = \"1 ug/s\", until = \"1 s\" }", "less than one particle"),
-        ("inlet = { mass_rate = \"2 Mg/s\", until = \"1000 s\" }", "more than 2e7"),
         ("groups = { low = \"z < 1 mm\" }\ninlet = { mass_rate = \"2 g/s\", until = \"1 s\" }", "groups"),
         ("solid_fraction = 0.2\ninlet = { mass_rate = \"2 g/s\", until = \"1 s\" }", "solid_fraction"),
     ];

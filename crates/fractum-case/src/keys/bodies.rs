@@ -189,7 +189,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].inlet", K::Table, "", "Loose, with a shape: the particles come in through the shape as time goes on, each at a free place by chance and with the body's initial_velocity; by one of mass_rate, number_rate. Explicit runs only"),
     key("bodies[].inlet.mass_rate", K::Quantity(D::MASS_RATE), "", "Mass that comes in a time, > 0"),
     key("bodies[].inlet.number_rate", K::Quantity(D::RATE), "", "Number of particles that come in a time, > 0"),
-    key("bodies[].inlet.from", K::Quantity(D::TIME), "0 s", "Begin, ≥ 0: a particle is due once the rate has brought the whole of it since then"),
+    key("bodies[].inlet.from", K::Quantity(D::TIME), "\"0 s\"", "Begin, ≥ 0: a particle is due once the rate has brought the whole of it since then"),
     key("bodies[].inlet.until", K::Quantity(D::TIME), "", "End, after the begin; required without particles, which ends the stream by their number"),
     key("bodies[].seed", K::Integer, "1", "Bonded and particles: seed of the packing"),
     key("bodies[].packing", K::Text, "", "Bonded: packing made by `fractum pack` (.fpk), relative to the case file, instead of a shape"),
