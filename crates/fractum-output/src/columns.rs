@@ -125,7 +125,8 @@ fn energies(of: fn(EnergyKind) -> bool) -> impl Iterator<Item = Column> {
 
 impl HistoryColumns {
     /// All that any run may have.
-    pub const ALL: Self = Self { particles: true, domain: true, inlets: true, heat: true, turns_back: true, in_motion: true };
+    pub const ALL: Self =
+        Self { particles: true, domain: true, inlets: true, heat: true, turns_back: true, in_motion: true };
 
     /// Names and SI units of the columns, in their order.
     pub fn list(self) -> Vec<(&'static str, &'static str)> {

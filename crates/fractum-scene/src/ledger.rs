@@ -279,7 +279,11 @@ impl Ledger {
     pub(crate) fn update_maxima(&mut self) {
         self.scale = self.scale.max(self.initial - self.in_situ).max(self[EnergyKind::External].abs());
         // Adhesion has given what it binds.
-        self.scale = self.scale.max(self[EnergyKind::Entered]).max(self[EnergyKind::LiquidSupplied].abs()).max(-self[EnergyKind::Contact]);
+        self.scale = self
+            .scale
+            .max(self[EnergyKind::Entered])
+            .max(self[EnergyKind::LiquidSupplied].abs())
+            .max(-self[EnergyKind::Contact]);
         self.residual_max_relative = self.residual_max_relative.max(self.relative_residual());
     }
 }

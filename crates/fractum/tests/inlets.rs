@@ -102,9 +102,17 @@ fn as_much_comes_in_as_the_rate_says() {
         assert_eq!(first.lines().next(), Some("0"));
     }
     // By number exactly.
-    let place = stream("initial_velocity = { z = \"-0.5 m/s\" }\ninlet = { number_rate = \"2000 1/s\", until = \"50 ms\" }", "", "60 ms");
+    let place = stream(
+        "initial_velocity = { z = \"-0.5 m/s\" }\ninlet = { number_rate = \"2000 1/s\", until = \"50 ms\" }",
+        "",
+        "60 ms",
+    );
     assert_eq!(number(&run(&place, "out", "1"), &["counts", "entered_particles"]), 100.0);
-    let place = stream("particles = 30\ninitial_velocity = { z = \"-0.5 m/s\" }\ninlet = { number_rate = \"2000 1/s\" }", "", "60 ms");
+    let place = stream(
+        "particles = 30\ninitial_velocity = { z = \"-0.5 m/s\" }\ninlet = { number_rate = \"2000 1/s\" }",
+        "",
+        "60 ms",
+    );
     assert_eq!(number(&run(&place, "out", "1"), &["counts", "entered_particles"]), 30.0);
 }
 
@@ -200,7 +208,8 @@ fn streams_that_cannot_be_are_refused_with_their_place() {
         assert!(ended.stderr.contains(expected), "{more}: {}", ended.stderr);
     }
     let far = STREAM.replace("INLET", inlet).replace("MORE", "").replace("END", "0.1 s");
-    let far = far.replace("[solver]\n", "[solver]\ndomain = { min = [0, 0, 0], max = [\"1 mm\", \"1 mm\", \"1 mm\"] }\n");
+    let far =
+        far.replace("[solver]\n", "[solver]\ndomain = { min = [0, 0, 0], max = [\"1 mm\", \"1 mm\", \"1 mm\"] }\n");
     let ended = Workplace::new(&far).fractum(&["check", "case.toml"]);
     assert!(ended.code == Some(1) && ended.stderr.contains("outside at the start"), "{}", ended.stderr);
     // Too small for its particles.

@@ -62,7 +62,8 @@ pub(super) fn doubts(case: &Case) -> Vec<Diagnostic> {
         };
         let most = REACH * volume / crossing;
         let found = format!("= {}: the inlet has room for about {}", in_words(asked), in_words(most));
-        let remedy = "a lower rate, a larger or deeper inlet, or a faster initial_velocity; particles without a place wait";
+        let remedy =
+            "a lower rate, a larger or deeper inlet, or a faster initial_velocity; particles without a place wait";
         (asked > most).then(|| warning(found).remedy(remedy))
     };
     streams(case).filter_map(doubt).collect()

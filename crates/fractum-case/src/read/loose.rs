@@ -100,7 +100,8 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
     if has_inlet {
         table.refuse("solid_fraction", "beside inlet, whose rate says how many there are");
     }
-    let amount = if graded && !has_inlet { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
+    let amount =
+        if graded && !has_inlet { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
     let seed = table.integer("seed").or_if_absent(1);
     let region = match &kind {
         Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
