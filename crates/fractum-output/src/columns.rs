@@ -1,6 +1,6 @@
 //! Columns of the history that are no probes: name, unit and value.
 
-use fractum_scene::{Counts, EnergyKind, EnergyRole, Entered, Heat, Ledger, Left, Scene};
+use fractum_scene::{Counts, EnergyKind, EnergyRole, Entered, Heat, Ledger, Left, Scene, entered_of};
 
 use crate::history::Table;
 
@@ -44,7 +44,7 @@ impl Instant<'_> {
     }
 
     fn entered(&self) -> &Entered {
-        self.scene.entered()
+        entered_of(self.scene)
     }
 
     fn heat(&self, of: fn(&Heat) -> f64) -> f64 {

@@ -17,6 +17,7 @@ mod contact_pairs;
 mod contacts;
 pub mod coupling;
 mod domain;
+mod enter;
 mod error;
 mod excavation;
 mod facet;
@@ -52,6 +53,7 @@ pub use contacts::{
     ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
 };
 pub use domain::{Domain, Left};
+pub use enter::{entered_of, inlets_of, with_inlets};
 pub use error::{SceneError, StepError};
 pub use excavation::Excavation;
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution, restitution_of_damping};

@@ -9,6 +9,7 @@ use crate::conditions::ConditionsState;
 use crate::contacts::{Candidate, ContactsState, NodesOnShape};
 use crate::coupling::DebrisState;
 use crate::domain::Left;
+use crate::enter::restore_inlets;
 use crate::inlet::{Entered, InletState};
 use crate::interfaces::InterfacesState;
 use crate::ledger::{Books, Ledger};
@@ -85,7 +86,7 @@ impl Scene {
         self.debris.restore(&self.solid, state.debris);
         if let Some(bonded) = state.bonded {
             self.bonded.restore(bonded);
-            self.restore_inlets(state.inlets, state.entered);
+            restore_inlets(self, state.inlets, state.entered);
             let left: Vec<u32> = state.left.particles(self.solid.reference.len()).collect();
             self.bonded.take_out(&left);
         }
@@ -135,7 +136,7 @@ pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {
         conditions: ConditionsState::of(&scene.loads, &scene.optional.surface_supports),
         interfaces: (!scene.interfaces().is_empty()).then(|| scene.interfaces().state()),
         liquid: scene.optional.liquid.as_deref().map(Liquid::state),
-        inlets: scene.inlet_states(),
-        entered: *scene.entered(),
+        inlets: scene.optional.inlets.iter().map(|inlet| inlet.state.clone()).collect(),
+        entered: scene.optional.entered,
     }
 }

@@ -63,7 +63,7 @@ use fractum_scene::coupling::Debris;
 use fractum_scene::statics::{ModesSettings, StaticSettings};
 use fractum_scene::{
     BondedStaticSettings, FlatFaces, Inlet, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
-    TimeStepSettings,
+    TimeStepSettings, with_inlets,
 };
 
 use crate::model::{Case, GroupUse, Selection, SolverKind, Support, TimeStep};
@@ -250,9 +250,9 @@ impl<'a> Context<'a> {
         let shapes = contacts::shape_contacts(&rigid_bodies);
         let scene = Scene::new(solid, supports, loads, debris, shapes, &surface_nodes, self.settings())
             .with_bonded(bonded)
-            .with_inlets(std::mem::take(&mut self.inlets))
             .with_ties(&ties.attachments)
             .with_surface_supports(surface_supports);
+        let scene = with_inlets(scene, std::mem::take(&mut self.inlets));
         let scene = interfaces::with_interfaces(self, scene, &parts, &numbering);
         let scene = liquid::with_liquid(self, scene, &numbering);
         warnings.extend(interfaces::doubts(self, &scene));

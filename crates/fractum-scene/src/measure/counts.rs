@@ -1,6 +1,7 @@
 //! How many there are of everything in a scene.
 
 use crate::contacts::NodesOnShape;
+use crate::enter::{entered_of, inlets_of};
 use crate::scene::Scene;
 use fractum_fem::{cracks, neighbours};
 
@@ -69,9 +70,9 @@ impl Scene {
             crushed_elements: self.removals.tally.crushed,
             particles: self.debris.len() + self.bonded.particles.len()
                 - self.removals.left.particles(self.solid.reference.len()).count()
-                - self.outside(),
-            entered_particles: self.entered().particles,
-            waiting_particles: self.entered().waiting,
+                - inlets_of(self).iter().map(|inlet| inlet.outside().len()).sum::<usize>(),
+            entered_particles: entered_of(self).particles,
+            waiting_particles: entered_of(self).waiting,
             left_pieces: self.removals.left.pieces,
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,

@@ -4,8 +4,8 @@ use fractum_case::build::BuiltScene;
 use fractum_case::model::{Body, BodyKind, Case, SolverKind};
 use fractum_output::columns::HistoryColumns;
 use fractum_output::history::Column;
-use fractum_scene::Scene;
 use fractum_scene::statics::{Control, NoEquilibrium};
+use fractum_scene::{Scene, inlets_of};
 
 /// How a run proceeds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -67,7 +67,7 @@ pub(crate) fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryCo
     HistoryColumns {
         particles: !scene.bonded.is_empty(),
         domain: may_lose(case),
-        inlets: scene.has_inlets(),
+        inlets: !inlets_of(scene).is_empty(),
         heat: scene.heat().is_some(),
         turns_back: course.turns_back,
         in_motion: both_rests_and_moves(case),
