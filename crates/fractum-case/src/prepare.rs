@@ -161,6 +161,7 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
         LooseSource::Graded { region, grading, amount, seed } => {
             LooseFill::Graded { region: &region.value, grading, amount: amount.value, seed: *seed }
         }
+        LooseSource::Inlet { stream, .. } => LooseFill::Stream(stream),
     };
     LooseRequest { source, density: material.density, young_modulus: material.young_modulus }
 }
@@ -193,6 +194,8 @@ fn of_loose(name: &Place, loose: &LooseBody, fault: &Fault) -> Diagnostic {
             placed(&count.place, format!("= {}", count.value), fault)
         }
         (At::Size, LooseSource::Graded { amount, .. }) => placed(&amount.place, String::new(), fault),
+        (At::Rate, LooseSource::Inlet { rate, .. }) => placed(rate, String::new(), fault),
+        (At::Shape, LooseSource::Inlet { region, .. }) => placed(region, String::new(), fault),
         (At::Shape, LooseSource::Cloud { region, .. } | LooseSource::Graded { region, .. }) => {
             placed(&region.place, String::new(), fault)
         }

@@ -41,7 +41,7 @@ pub fn close_pairs_of(
     let is_near = |i: usize| radii[i] >= 0.0 && (0..3).all(|k| centres[i][k] >= low[k] && centres[i][k] <= high[k]);
     let near: Vec<u32> = (0..centres.len()).filter(|&i| is_near(i)).map(|i| i as u32).collect();
     let spheres = NearSpheres { centres, radii, skin, is_wanted };
-    let mean = radii.iter().map(|radius| radius.max(0.0)).sum::<f64>() / radii.len() as f64;
+    let mean = near.iter().map(|&i| radii[i as usize]).sum::<f64>() / near.len() as f64;
     if widest + 0.5 * skin > UNEVEN * (mean + 0.5 * skin) {
         return spheres.pairs_by_tree(&near);
     }

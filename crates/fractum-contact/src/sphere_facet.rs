@@ -194,6 +194,11 @@ impl<L: ContactLaw> SurfaceContacts<L> {
         self.searched_at.clear();
     }
 
+    /// Takes a sphere that was not there at a place to which the ground is not nearer than two skins: no search is due for it.
+    pub fn admit(&mut self, ground: &Surface, sphere: u32, place: &Vec3) {
+        self.searched_at.get_mut(sphere as usize).into_iter().for_each(|at| *at = to_ground(ground, place));
+    }
+
     /// Spheres near the ground, ascending: all that can touch before the next search.
     pub fn near(&self) -> impl Iterator<Item = u32> {
         self.blocks.iter().flat_map(|block| block.spheres.iter().copied())

@@ -127,6 +127,11 @@ impl<L: ContactLaw> SphereContacts<L> {
         self.searched_at.clear();
     }
 
+    /// Takes a sphere that was not there at a place to which no other is nearer than one and a half skins: no search is due for it.
+    pub fn admit(&mut self, sphere: u32, place: &Vec3) {
+        self.searched_at.get_mut(sphere as usize).into_iter().for_each(|at| *at = *place);
+    }
+
     fn index(&mut self, spheres: usize) {
         self.starts.clear();
         self.starts.resize(spheres + 1, 0);

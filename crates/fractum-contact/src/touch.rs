@@ -16,7 +16,7 @@ pub struct Spheres<'a> {
     pub velocity: &'a [Vec3],
     /// Angular velocities [rad/s].
     pub spin: &'a [Vec3],
-    /// Radii [m]; a sphere with a negative one has left, and meets nothing.
+    /// Radii [m]; a sphere with a negative one is not there, and meets nothing.
     pub radius: &'a [f64],
 }
 
@@ -89,6 +89,41 @@ impl<M> Touch<M> {
 }
 
 impl Surface<'_> {
+    /// Facets that a ball overlaps, ascending; none of a shape.
+    ///
+    /// - `centre`, `radius` [m]: of the ball, in space
+    pub fn facets_within(&self, centre: &Vec3, radius: f64) -> Vec<u32> {
+        match self {
+            Surface::Shape { .. } => Vec::new(),
+            Surface::Rigid { surface, .. } | Surface::Deformable { surface, .. } => {
+                (0..surface.len() as u32).filter(|&facet| self.is_facet_within(facet, centre, radius)).collect()
+            }
+        }
+    }
+
+    /// Whether a ball overlaps the ground: one of these facets, or its shape.
+    ///
+    /// - `centre`, `radius` [m]: of the ball, in space
+    pub fn is_within(&self, facets: &[u32], centre: &Vec3, radius: f64) -> bool {
+        match self {
+            Surface::Shape { shape, hollow, frame } => {
+                let mut feet = Vec::new();
+                shape.feet(*hollow, &frame.to_body(centre), radius, &mut feet);
+                !feet.is_empty()
+            }
+            _ => facets.iter().any(|&facet| self.is_facet_within(facet, centre, radius)),
+        }
+    }
+
+    fn is_facet_within(&self, facet: u32, centre: &Vec3, radius: f64) -> bool {
+        let (surface, points, centre) = match self {
+            Surface::Rigid { surface, points, frame } => (surface, points, frame.to_body(centre)),
+            Surface::Deformable { surface, points, .. } => (surface, points, *centre),
+            Surface::Shape { .. } => return false,
+        };
+        !surface.is_gone(facet) && surface.closest(facet, points, &centre).1.norm_squared() < radius * radius
+    }
+
     pub(crate) fn part(&self, facet: u32) -> u32 {
         match self {
             Surface::Rigid { surface, .. } | Surface::Deformable { surface, .. } => surface.part(facet),

@@ -1,6 +1,6 @@
 //! Columns of the history that are no probes: name, unit and value.
 
-use fractum_scene::{Counts, EnergyKind, EnergyRole, Heat, Ledger, Left, Scene};
+use fractum_scene::{Counts, EnergyKind, EnergyRole, Entered, Heat, Ledger, Left, Scene, entered_of};
 
 use crate::history::Table;
 
@@ -11,6 +11,8 @@ pub struct HistoryColumns {
     pub particles: bool,
     /// A domain that pieces may leave, or stages that take bodies out.
     pub domain: bool,
+    /// Inlets through which particles come in.
+    pub inlets: bool,
     /// Heat.
     pub heat: bool,
     /// A load factor that may run back, so that rows are ordered by steps.
@@ -39,6 +41,10 @@ pub struct Instant<'a> {
 impl Instant<'_> {
     fn left(&self) -> &Left {
         self.scene.left()
+    }
+
+    fn entered(&self) -> &Entered {
+        entered_of(self.scene)
     }
 
     fn heat(&self, of: fn(&Heat) -> f64) -> f64 {
@@ -84,6 +90,16 @@ const LEFT: [Column; 5] = [
     column("left_momentum_z", "N s", |row| row.left().momentum.z),
 ];
 
+/// What has come in through inlets.
+const ENTERED: [Column; 6] = [
+    column("entered_particles", "1", |row| row.entered().particles as f64),
+    column("entered_mass", "kg", |row| row.entered().mass),
+    column("entered_momentum_x", "N s", |row| row.entered().momentum.x),
+    column("entered_momentum_y", "N s", |row| row.entered().momentum.y),
+    column("entered_momentum_z", "N s", |row| row.entered().momentum.z),
+    column("waiting_particles", "1", |row| row.entered().waiting as f64),
+];
+
 const HEAT: [Column; 3] = [
     column("heat_stored", "J", |row| row.heat(|heat| heat.ledger().stored)),
     column("heat_brought", "J", |row| {
@@ -109,7 +125,8 @@ fn energies(of: fn(EnergyKind) -> bool) -> impl Iterator<Item = Column> {
 
 impl HistoryColumns {
     /// All that any run may have.
-    pub const ALL: Self = Self { particles: true, domain: true, heat: true, turns_back: true, in_motion: true };
+    pub const ALL: Self =
+        Self { particles: true, domain: true, inlets: true, heat: true, turns_back: true, in_motion: true };
 
     /// Names and SI units of the columns, in their order.
     pub fn list(self) -> Vec<(&'static str, &'static str)> {
@@ -125,13 +142,14 @@ impl HistoryColumns {
         self.groups().iter().flatten().map(value).collect()
     }
 
-    fn groups(self) -> [Vec<Column>; 6] {
+    fn groups(self) -> [Vec<Column>; 7] {
         let ledger = FIRST.into_iter().chain(energies(|kind| kind.sign() != 0)).chain(COUNTS).collect();
         let bonds = energies(|kind| kind.role() == EnergyRole::PartOfBonds).chain(BONDS).collect();
         let groups = [
             (true, ledger),
             (self.particles, bonds),
             (self.domain, LEFT.to_vec()),
+            (self.inlets, ENTERED.to_vec()),
             (self.heat, HEAT.to_vec()),
             (self.turns_back, vec![STEP]),
             (self.in_motion, vec![IN_MOTION]),
@@ -181,8 +199,9 @@ mod tests {
             heat: bits & 4 > 0,
             turns_back: bits & 8 > 0,
             in_motion: bits & 16 > 0,
+            inlets: bits & 32 > 0,
         };
-        for columns in (0..32).map(of) {
+        for columns in (0..64).map(of) {
             let list = columns.list();
             let names: Vec<&str> = list.iter().map(|(name, _)| *name).chain(["load"]).collect();
             assert_eq!(HistoryColumns::count(&names), list.len(), "{columns:?}");

@@ -249,6 +249,18 @@ pub struct Counts {
     pub crushed_elements: u64,
     /// Particles.
     pub particles: u64,
+    /// Those that have come in through inlets.
+    #[serde(default)]
+    pub entered_particles: u64,
+    /// Those that were due at the end and had no free place in their inlet.
+    #[serde(default)]
+    pub waiting_particles: u64,
+    /// The most that have waited at a time.
+    #[serde(default)]
+    pub most_waiting_particles: u64,
+    /// Free pieces that have left the domain.
+    #[serde(default)]
+    pub left_pieces: u64,
     /// Bonds at the start.
     pub bonds: u64,
     /// Bonds that broke.

@@ -143,6 +143,10 @@ codes! {
     LiquidAtEnd = "liquid-at-end",
     /// More liquid was drawn than there was.
     LiquidOverdrawn = "liquid-overdrawn",
+    /// A rate at which an inlet has no room for its particles.
+    InletRate = "inlet-rate",
+    /// Particles that are due, and find no free place in their inlet.
+    InletBlocked = "inlet-blocked",
     /// An element that had begun to break was turned inside out, and taken out.
     Crushed = "crushed",
     /// Particles that are pressed deeply into each other.

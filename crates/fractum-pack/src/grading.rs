@@ -104,7 +104,7 @@ impl Grading {
     }
 
     /// Diameter below which this share of the particles lies [m].
-    fn at_number(&self, share: f64) -> f64 {
+    pub(crate) fn at_number(&self, share: f64) -> f64 {
         let next = self.number.partition_point(|own| *own <= share).clamp(1, self.number.len() - 1);
         let (low, high) = (self.number[next - 1], self.number[next]);
         let part = if high > low { (share - low) / (high - low) } else { 1.0 };

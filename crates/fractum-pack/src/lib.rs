@@ -32,6 +32,7 @@ mod random;
 mod regular;
 mod relax;
 mod stl;
+mod stream;
 mod surface;
 mod wall_areas;
 
@@ -47,4 +48,5 @@ pub use network::{BondNetwork, Convention, bond, pairs_within};
 pub use packing::{Compaction, Packing};
 pub use regular::{Arrangement, regular};
 pub use stl::{read_stl, read_stl_facets};
+pub use stream::{Sizes, place_in};
 pub use surface::{ClosedSurface, SurfaceData};

@@ -3,7 +3,7 @@
 use fractum_calibrate::Micro;
 use fractum_dem::{FractureCriterion, LocalBond};
 use fractum_math::Vec3;
-use fractum_pack::{Arrangement, Convention, Domain, Grading};
+use fractum_pack::{Arrangement, Convention, Domain, Grading, Sizes};
 
 /// A bonded body to be made.
 #[derive(Clone, Debug)]
@@ -147,6 +147,53 @@ pub enum LooseFill<'a> {
         /// Seed of sizes and places.
         seed: u64,
     },
+    /// Particles that come into the run as time goes on.
+    Stream(&'a Stream),
+}
+
+/// Particles that come into a run as time goes on, at random places of a region.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stream {
+    /// The region.
+    pub region: Region,
+    /// Their sizes.
+    pub sizes: Sizes,
+    /// How many come in a time.
+    pub rate: Rate,
+    /// When the first ones begin to come [s].
+    pub from: f64,
+    /// None are due later [s]; `None` where their number ends the stream.
+    pub until: Option<f64>,
+    /// At most so many; `None` where the time ends the stream.
+    pub most: Option<u64>,
+    /// Seed of sizes and places.
+    pub seed: u64,
+}
+
+/// How much comes in a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rate {
+    /// A mass [kg/s], > 0.
+    Mass(f64),
+    /// A number of particles [1/s], > 0.
+    Number(f64),
+}
+
+impl Stream {
+    /// Volume of particles in a time [m³/s], of a density [kg/m³].
+    pub fn volume_rate(&self, density: f64) -> f64 {
+        match self.rate {
+            Rate::Mass(rate) => rate / density,
+            Rate::Number(rate) => rate * self.sizes.mean_volume(),
+        }
+    }
+
+    /// About how many particles come, of a density [kg/m³].
+    pub fn count(&self, density: f64) -> f64 {
+        let lasts = self.until.map_or(f64::INFINITY, |until| until - self.from);
+        let of_rate = self.volume_rate(density) / self.sizes.mean_volume() * lasts;
+        of_rate.min(self.most.map_or(f64::INFINITY, |most| most as f64))
+    }
 }
 
 /// How much of a cloud of given sizes there is.
@@ -302,6 +349,8 @@ pub enum At {
     File,
     /// The size or the number of particles.
     Size,
+    /// How many particles come in a time.
+    Rate,
     /// The solid that it takes the place of.
     Replaced,
 }

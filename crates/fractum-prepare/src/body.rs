@@ -3,7 +3,7 @@
 use fractum_dem::{AnyBondLaw, Particles};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
-use fractum_scene::BondFracture;
+use fractum_scene::{Arrivals, BondFracture};
 
 /// The particles of a bonded or loose body: packed or read, bonded and calibrated.
 #[derive(Clone, Debug)]
@@ -26,6 +26,8 @@ pub struct PreparedBody {
     pub fraction: f64,
     /// When its bonds break, with the criterion's own strengths.
     pub fracture: Option<BondFracture>,
+    /// When they come into the run, and where; all are there from the start where there is nothing.
+    pub arrivals: Option<Arrivals>,
     /// Tetrahedra of the mesh that it takes the place of.
     pub replaced: Vec<u32>,
 }

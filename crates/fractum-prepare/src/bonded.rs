@@ -203,6 +203,7 @@ impl Maker<'_> {
             shift_to_walls: made.sample.packing.shift_to_walls(),
             walls: made.sample.packing.walls,
             domain: Some(made.sample.packing.domain),
+            arrivals: None,
             replaced: region.map_or_else(Vec::new, |region| region.elements),
         };
         Ok(MadeBody { body, report, doubts, timing: Some(timing), read: own.read })

@@ -28,7 +28,7 @@ mod region;
 
 pub use asked::{
     Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces,
-    LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Region, Shape, graded_count,
+    LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Rate, Region, Shape, Stream, graded_count,
 };
 pub use body::PreparedBody;
 pub use bonded::{

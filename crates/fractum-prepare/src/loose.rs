@@ -1,10 +1,13 @@
 //! Loose particles made ready: clouds filled, files read.
 
+use std::sync::Arc;
+
 use fractum_dem::{BeamSection, Particles};
 use fractum_math::{Vec3, sphere_volume};
-use fractum_pack::{Grading, cloud, insert};
+use fractum_pack::{Grading, cloud, insert, place_in};
+use fractum_scene::Arrivals;
 
-use crate::asked::{Amount, At, Fault, LooseFill, LooseRequest, Region, graded_count};
+use crate::asked::{Amount, At, Fault, LooseFill, LooseRequest, Rate, Region, Stream, graded_count};
 use crate::body::PreparedBody;
 use crate::particle_file;
 
@@ -21,7 +24,7 @@ pub struct MadeParticles {
 /// # Errors
 /// A file that holds no spheres; a region without room.
 pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
-    let mut file = None;
+    let (mut file, mut arrivals) = (None, None);
     let (position, radius, at) = match asked.source {
         LooseFill::File(of) => {
             let found = file.insert(particle_file::read(&of)?);
@@ -47,6 +50,14 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
             let (centres, radii) = fill_graded(region, grading, amount, seed)?;
             (centres, radii, At::Shape)
         }
+        LooseFill::Stream(stream) => {
+            let (radii, due) = due(stream, asked.density)?;
+            let (bounds, place) = places(stream)?;
+            // They wait where the first tries would put them.
+            let centres = radii.iter().zip(0..).map(|(radius, number)| place(*radius, number)).collect();
+            arrivals = Some(Arrivals { due, bounds, place });
+            (centres, radii, At::Shape)
+        }
     };
     let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
     let mut particles =
@@ -70,6 +81,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         shift_to_walls: Vec::new(),
         fraction: 1.0,
         fracture: None,
+        arrivals,
         replaced: Vec::new(),
     };
     let read = file.map(|file| match file.bonds.len() {
@@ -101,6 +113,55 @@ fn fill_graded(region: &Region, grading: &Grading, amount: Amount, seed: u64) ->
     Ok((centres, radii))
 }
 
+/// Radii of the particles of a stream [m], and when each is due [s]: when the rate has brought it as a whole.
+fn due(stream: &Stream, density: f64) -> Result<(Vec<f64>, Vec<f64>), Fault> {
+    let expected = stream.count(density);
+    if expected > MOST {
+        let fault = Fault::new(At::Rate, format!("brings {expected:.2e} particles, more than {MOST:.0e}"));
+        return Err(fault.remedy("a lower rate, a shorter time, or larger particles"));
+    }
+    let (mut radii, mut due, mut brought) = (Vec::new(), Vec::new(), 0.0);
+    // By chance sizes may fall short of their mean: the time alone ends a stream by mass.
+    let most = stream.most.map_or(usize::MAX, |most| most as usize);
+    for radius in stream.sizes.radii(stream.seed).take(most) {
+        brought += match stream.rate {
+            Rate::Mass(rate) => sphere_volume(radius) * density / rate,
+            Rate::Number(rate) => 1.0 / rate,
+        };
+        let time = stream.from + brought;
+        // A number of particles that is asked for is there in spite of rounding.
+        if stream.until.is_some_and(|until| time > until + 1e-9 * (until - stream.from)) {
+            break;
+        }
+        radii.push(radius);
+        due.push(time);
+    }
+    if radii.is_empty() {
+        let fault = Fault::new(At::Rate, "brings less than one particle until its end");
+        return Err(fault.remedy("a higher rate, a later end, or smaller particles"));
+    }
+    Ok((radii, due))
+}
+
+/// A place in a stream's region for a ball of a radius [m], by the number of the place.
+type PlaceOf = Arc<dyn Fn(f64, u64) -> Vec3 + Send + Sync>;
+
+/// Box around a stream's region, and places in it.
+fn places(stream: &Stream) -> Result<([Vec3; 2], PlaceOf), Fault> {
+    let (lower, upper) = bounds(&stream.region);
+    let (depth, largest) = (depth_in(&stream.region), stream.sizes.largest());
+    // Places have numbers of their own.
+    let seed = !stream.seed;
+    if place_in(&lower, &upper, &depth, largest, (seed, 0)).is_none() {
+        let fault = Fault::new(At::Shape, "has no room for its largest particle");
+        return Err(fault.remedy("a larger region, or smaller particles"));
+    }
+    let place = move |radius: f64, number: u64| {
+        place_in(&lower, &upper, &depth, radius, (seed, number)).unwrap_or(0.5 * (lower + upper))
+    };
+    Ok(([lower, upper], Arc::new(place)))
+}
+
 /// Box around a region.
 fn bounds(region: &Region) -> (Vec3, Vec3) {
     match *region {
@@ -115,7 +176,7 @@ fn bounds(region: &Region) -> (Vec3, Vec3) {
 }
 
 /// Distance of a point from the wall of a region [m], positive inside.
-fn depth_in(region: &Region) -> impl Fn(&Vec3) -> f64 {
+fn depth_in(region: &Region) -> impl Fn(&Vec3) -> f64 + use<> {
     let region = *region;
     move |x| match region {
         Region::Box { point, size } => (x - point).min().min((point + size - x).min()),

@@ -227,7 +227,7 @@ fn broken_bonds(scene: &Scene, studio: &Studio, files: &mut Group) -> Option<Pic
     let view = View { direction: look.into(), up, ..studio.view };
     let depth = |i: usize| reference[i].dot(&look);
     let middle = (0..balls.len()).map(|i| lost[i] * depth(i)).sum::<f64>() / lost.iter().sum::<f64>();
-    let drawn = |i: usize| depth(i) >= middle && !bonded.particles.has_left(i);
+    let drawn = |i: usize| depth(i) >= middle && !bonded.particles.is_out(i);
     let kept: Vec<usize> = (0..balls.len()).filter(|&i| drawn(i)).collect();
     let centres: Vec<[f64; 3]> = kept.iter().map(|&i| balls[i]).collect();
     let radii: Vec<f64> = kept.iter().map(|&i| bonded.particles.radius[i]).collect();

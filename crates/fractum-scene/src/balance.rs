@@ -74,6 +74,7 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::TimeStep] = books.time_step;
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
     ledger[EnergyKind::Left] = books.left;
+    ledger[EnergyKind::Entered] = books.entered;
     book_interfaces(ledger, books, &optional.interfaces);
     ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
     if scene.clock.step == 0 {

@@ -32,15 +32,17 @@ impl Scene {
     }
 }
 
-/// Whether a point of a population has left the run.
-pub(crate) fn has_left(scene: &Scene, population: Population) -> impl Fn(u32) -> bool + use<> {
-    let nodes = scene.solid.reference.len();
-    let mut left: Vec<u32> = match population {
-        Population::Nodes => scene.left().nodes(nodes).collect(),
-        Population::Particles => scene.left().particles(nodes).collect(),
-    };
-    left.sort_unstable();
-    move |point| left.binary_search(&point).is_ok()
+/// Whether a point of a population is out of the run: it has left, or has not come in yet.
+pub(crate) fn is_out(scene: &Scene, population: Population) -> impl Fn(u32) -> bool {
+    let of_nodes = matches!(population, Population::Nodes);
+    let mut left: Vec<u32> = Vec::new();
+    if of_nodes {
+        left.extend(scene.left().nodes(scene.solid.reference.len()));
+        left.sort_unstable();
+    }
+    move |point| {
+        if of_nodes { left.binary_search(&point).is_ok() } else { scene.bonded.particles.is_out(point as usize) }
+    }
 }
 
 /// Has nothing push what has left, which rests where it was then.

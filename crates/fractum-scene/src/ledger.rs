@@ -60,6 +60,8 @@ pub enum EnergyKind {
     LiquidLeaked,
     /// Energy of pieces that have left the domain of the run, and of bodies that a stage took out.
     Left,
+    /// Energy of motion with which particles have come in through inlets.
+    Entered,
 }
 
 /// What an entry is to the energy balance.
@@ -135,6 +137,7 @@ impl EnergyKind {
         entry(EnergyKind::LiquidFlow, "liquid_flow", "Viscous flow of liquid", EnergyRole::Spent),
         entry(EnergyKind::LiquidLeaked, "liquid_leaked", "Liquid leaked", EnergyRole::Spent),
         entry(EnergyKind::Left, "left", "Left the run", EnergyRole::Spent),
+        entry(EnergyKind::Entered, "entered", "Entered the run", EnergyRole::Supplied),
     ];
 
     const fn entry(self) -> &'static Entry {
@@ -213,6 +216,7 @@ pub(crate) struct Books {
     pub(crate) absorbed: f64,
     pub(crate) time_step: f64,
     pub(crate) left: f64,
+    pub(crate) entered: f64,
     /// Work that interfaces have taken, but for friction and the meeting of their sides.
     pub(crate) interfaces: f64,
     /// Part of `damping` that damping of nodes and particles has taken in the second half of the run.
@@ -275,7 +279,11 @@ impl Ledger {
     pub(crate) fn update_maxima(&mut self) {
         self.scale = self.scale.max(self.initial - self.in_situ).max(self[EnergyKind::External].abs());
         // Adhesion has given what it binds.
-        self.scale = self.scale.max(self[EnergyKind::LiquidSupplied].abs()).max(-self[EnergyKind::Contact]);
+        self.scale = self
+            .scale
+            .max(self[EnergyKind::Entered])
+            .max(self[EnergyKind::LiquidSupplied].abs())
+            .max(-self[EnergyKind::Contact]);
         self.residual_max_relative = self.residual_max_relative.max(self.relative_residual());
     }
 }

@@ -17,12 +17,14 @@ mod contact_pairs;
 mod contacts;
 pub mod coupling;
 mod domain;
+mod enter;
 mod error;
 mod excavation;
 mod facet;
 mod fragment;
 mod gas;
 mod heat;
+mod inlet;
 mod interfaces;
 mod leave;
 mod ledger;
@@ -51,6 +53,7 @@ pub use contacts::{
     ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
 };
 pub use domain::{Domain, Left};
+pub use enter::{entered_of, inlets_of, with_inlets};
 pub use error::{SceneError, StepError};
 pub use excavation::Excavation;
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution, restitution_of_damping};
@@ -64,6 +67,7 @@ pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource,
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
+pub use inlet::{Arrivals, Entered, EntryMotion, Inlet};
 pub use interfaces::{FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use liquid::{Injection, InjectionDrive, Liquid, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState};

@@ -23,6 +23,9 @@ pub fn cannot_be_distributed(scene: &Scene) -> Option<&'static str> {
     if scene.optional.heat.is_some() {
         return Some("heat");
     }
+    if !scene.optional.inlets.is_empty() {
+        return Some("particles that come in through an inlet");
+    }
     scene.bonded.cannot_be_distributed().filter(|_| scene.solid.body_count() == 0)
 }
 

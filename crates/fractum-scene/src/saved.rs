@@ -9,6 +9,8 @@ use crate::conditions::ConditionsState;
 use crate::contacts::{Candidate, ContactsState, NodesOnShape};
 use crate::coupling::DebrisState;
 use crate::domain::Left;
+use crate::enter::restore_inlets;
+use crate::inlet::{Entered, InletState};
 use crate::interfaces::InterfacesState;
 use crate::ledger::{Books, Ledger};
 use crate::liquid::{Liquid, LiquidState};
@@ -36,6 +38,8 @@ pub struct SceneState {
     conditions: ConditionsState,
     interfaces: Option<InterfacesState>,
     liquid: Option<LiquidState>,
+    inlets: Vec<InletState>,
+    entered: Entered,
 }
 
 impl SceneState {
@@ -59,7 +63,7 @@ impl SceneState {
         let touching = (&self.debris, &self.bonded, &self.contacts, &self.shape_contacts);
         let frequencies = (self.frequency, self.governing, self.removals);
         let of_contacts = (self.contact_frequency_square, self.contact_frequency_peak);
-        let rest = (&self.left, &self.conditions, &self.interfaces, &self.liquid);
+        let rest = (&self.left, &self.conditions, &self.interfaces, &self.liquid, &self.inlets, &self.entered);
         (&self.solid.born, touching, (&self.ledger, &self.books), frequencies, of_contacts, rest)
     }
 
@@ -82,6 +86,7 @@ impl Scene {
         self.debris.restore(&self.solid, state.debris);
         if let Some(bonded) = state.bonded {
             self.bonded.restore(bonded);
+            restore_inlets(self, state.inlets, state.entered);
             let left: Vec<u32> = state.left.particles(self.solid.reference.len()).collect();
             self.bonded.take_out(&left);
         }
@@ -131,5 +136,7 @@ pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {
         conditions: ConditionsState::of(&scene.loads, &scene.optional.surface_supports),
         interfaces: (!scene.interfaces().is_empty()).then(|| scene.interfaces().state()),
         liquid: scene.optional.liquid.as_deref().map(Liquid::state),
+        inlets: scene.optional.inlets.iter().map(|inlet| inlet.state.clone()).collect(),
+        entered: scene.optional.entered,
     }
 }

@@ -12,6 +12,7 @@ use crate::excavation::Excavation;
 use crate::fragment::{Fragment, joined, linked, marked_pieces, single_share, solid_pieces};
 use crate::gas::Gas;
 use crate::heat::Heat;
+use crate::inlet::{Entered, Inlet};
 use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
 use crate::liquid::Liquid;
@@ -62,6 +63,9 @@ pub(crate) struct Optional {
     pub(crate) is_between_equilibria: bool,
     /// Natural vibrations, once they have been looked for.
     pub(crate) modes: Option<Box<Modes>>,
+    /// Where particles come into the run.
+    pub(crate) inlets: Vec<Inlet>,
+    pub(crate) entered: Entered,
     /// What was noticed beyond the models of the scene.
     pub(crate) watch: Watch,
 }

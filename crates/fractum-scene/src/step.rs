@@ -6,6 +6,7 @@ use crate::balance::book;
 use crate::clock::{Phase, ThisStep};
 use crate::conduct::{conduct, finish_expansion, heat_loses_elements};
 use crate::contacts::{HoldStep, Touching, hold_nodes};
+use crate::enter::let_particles_enter;
 use crate::error::StepError;
 use crate::interfaces::motion::InterfaceStep;
 use crate::leave::{hold_departed_particles, remove_departed_fragments, remove_departed_particles};
@@ -63,6 +64,7 @@ impl Scene {
         let given = if step.is_first { start_half_a_step_early(self, step.dt_before) } else { 0.0 };
         hold_departed_particles(self);
         remove_departed_particles(self, step.dt_before);
+        let_particles_enter(self, &step);
         let expansion = conduct(self, step.dt_after, &mut passed)?;
         break_bonds(self, step.measure || step.changes, &mut passed);
         let mut work = advance(self, step.measure || step.changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹

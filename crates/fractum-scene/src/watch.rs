@@ -36,10 +36,12 @@ pub enum Notice {
     LiquidAtEnd,
     /// More liquid was drawn than there was [m³].
     Overdrawn,
+    /// Particles that are due wait, since their inlet has no free place: how many.
+    InletBlocked,
 }
 
 impl Notice {
-    const COUNT: usize = Notice::Overdrawn as usize + 1;
+    const COUNT: usize = Notice::InletBlocked as usize + 1;
 }
 
 /// Where something was noticed.

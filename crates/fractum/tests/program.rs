@@ -18,6 +18,7 @@ mod fragments;
 mod gallery;
 mod gauges;
 mod heat;
+mod inlets;
 mod interfaces;
 mod interrupt;
 mod jointed;

@@ -1,12 +1,14 @@
 //! Bonded bodies, and the supports, loads and probes on their particles.
 
+use std::sync::Arc;
+
 use fractum_dem::Particles;
 use fractum_math::Vec3;
 use fractum_output::warning::Code;
 use fractum_pack::Domain;
 use fractum_prepare::PreparedBody;
 use fractum_scene::coupling::Attachment;
-use fractum_scene::{Bonded, BondedPart, FlatFaces, Support};
+use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
@@ -38,7 +40,17 @@ impl Context<'_> {
         let (mut parts, mut start) = (Vec::new(), 0u32);
         for ((index, body, material, groups, initial_velocity), mut made) in bodies.zip(prepared) {
             let count = made.particles.len() as u32;
-            set_initial_velocity(&mut made.particles, initial_velocity);
+            let motion = initial_motion(initial_velocity);
+            if let Some(motion) = &motion {
+                set_motion(&mut made.particles, motion);
+            }
+            if let Some(arrivals) = made.arrivals.take() {
+                let motion: EntryMotion = match motion {
+                    Some(motion) => Arc::new(motion),
+                    None => Arc::new(|_, _| [Vec3::zeros(); 2]),
+                };
+                self.inlets.push(Inlet::new(start, arrivals, motion, &made.particles.radius));
+            }
             self.scatter_particles(&body.name.value, &case.materials[material], &mut made);
             let domain = made.domain.take().map(|domain| (domain, made.walls.len()));
             let mut sets = vec![(String::new(), (start..start + count).collect::<Vec<u32>>())];
@@ -170,15 +182,14 @@ fn flat_faces(material: &Material, shift: Vec<Vec3>) -> Option<FlatFaces> {
     flat.then_some(FlatFaces { young_modulus, poisson_ratio, shift })
 }
 
-/// Gives particles the velocity of the field at their centres, and its rate of rotation, half the curl.
-fn set_initial_velocity(particles: &mut Particles, field: &[Option<Field>; 3]) {
+/// Velocity of a field at a place [m/s], and its rate of rotation over a radius there, half the curl [rad/s]; none where all is at rest.
+fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [Vec3; 2] + Send + Sync + use<>> {
     if field.iter().all(Option::is_none) {
-        return;
+        return None;
     }
-    let velocity = |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value(0.0, x)));
-    for i in 0..particles.len() {
-        let (x, h) = (particles.position[i], particles.radius[i]);
-        particles.velocity[i] = velocity(x);
+    let field = field.clone();
+    let velocity = move |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value(0.0, x)));
+    Some(move |x: &Vec3, h: f64| {
         // Central differences over the particle itself: what it would see of the motion.
         let slope = |axis: usize| {
             let mut step = Vec3::zeros();
@@ -186,6 +197,13 @@ fn set_initial_velocity(particles: &mut Particles, field: &[Option<Field>; 3]) {
             (velocity(x + step) - velocity(x - step)) / (2.0 * h)
         };
         let [dx, dy, dz] = [slope(0), slope(1), slope(2)];
-        particles.spin[i] = Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5;
+        [velocity(*x), Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5]
+    })
+}
+
+/// Gives particles the motion of their places.
+fn set_motion(particles: &mut Particles, motion: &impl Fn(&Vec3, f64) -> [Vec3; 2]) {
+    for i in 0..particles.len() {
+        [particles.velocity[i], particles.spin[i]] = motion(&particles.position[i], particles.radius[i]);
     }
 }

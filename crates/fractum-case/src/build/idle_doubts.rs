@@ -169,9 +169,12 @@ fn function_of(motion: &Motion) -> Option<&TimeFunction> {
 
 /// Probes of what the case has not: cracks where no material has a strength, gas, liquid.
 pub(super) fn measured_in_vain(case: &Case) -> Vec<Diagnostic> {
-    use fractum_scene::CountKind::{BrokenBonds, BrokenEdges, DamagedEdges, RemovedElements};
+    use fractum_scene::CountKind::{
+        BrokenBonds, BrokenEdges, DamagedEdges, EnteredParticles, LeftPieces, RemovedElements, WaitingParticles,
+    };
     let strong =
         |material: &Material| material.damage.is_none() && material.fracture.is_none() && material.interfaces.is_none();
+    let stages = || std::iter::once(case).chain(&case.later);
     let holds = case.interfaces.is_empty() && case.materials.iter().all(strong);
     let doubt = |probe: &Probe| {
         let (found, remedy) = match &probe.kind {
@@ -180,6 +183,12 @@ pub(super) fn measured_in_vain(case: &Case) -> Vec<Diagnostic> {
             }
             ProbeKind::Count(Count(RemovedElements | BrokenEdges | DamagedEdges | BrokenBonds)) if holds => {
                 ("no material of the case can break", "give the material a table damage (solids) or fracture (bonds)")
+            }
+            ProbeKind::Count(Count(EnteredParticles | WaitingParticles)) if !case.has_inlets() => {
+                ("no particles come in as time goes on", "give a body of particles an inlet")
+            }
+            ProbeKind::Count(Count(LeftPieces)) if !stages().any(|stage| stage.solver.domain.is_some()) => {
+                ("pieces have no domain that they could leave", "give the run a solver.domain")
             }
             ProbeKind::GasIn(_) if case.flows.gas.is_none() => ("the case has no gas", "add a table [gas]"),
             ProbeKind::LiquidIn(_) if case.flows.liquid.is_none() => ("the case has no liquid", "add a table [liquid]"),

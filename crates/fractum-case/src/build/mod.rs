@@ -18,6 +18,7 @@ mod heat;
 mod idle_doubts;
 mod in_situ;
 mod in_situ_doubts;
+mod inlets;
 mod inner_facets;
 mod interfaces;
 mod liquid;
@@ -61,8 +62,8 @@ use fractum_prepare::PreparedBody;
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::{ModesSettings, StaticSettings};
 use fractum_scene::{
-    BondedStaticSettings, FlatFaces, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
-    TimeStepSettings,
+    BondedStaticSettings, FlatFaces, Inlet, Loads, Probe, Scene, SceneError, SceneSettings, Supports, SurfaceSupports,
+    TimeStepSettings, with_inlets,
 };
 
 use crate::model::{Case, GroupUse, Selection, SolverKind, Support, TimeStep};
@@ -117,6 +118,8 @@ struct Context<'a> {
     particle_sets: Vec<ParticleSets>,
     /// Faces of each body of particles as rigid bodies feel them.
     flat_faces: Vec<Option<FlatFaces>>,
+    /// Where particles of bodies come into the run.
+    inlets: Vec<Inlet>,
     weibull: Vec<WeibullReport>,
     diagnostics: Vec<Diagnostic>,
 }
@@ -133,6 +136,7 @@ pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostic
         division: None,
         particle_sets: Vec::new(),
         flat_faces: Vec::new(),
+        inlets: Vec::new(),
         weibull: Vec::new(),
         diagnostics: Vec::new(),
     };
@@ -170,8 +174,9 @@ pub fn build_shared_scene(
 ) -> Result<BuiltScene, Diagnostics> {
     // The equilibrium with which in-situ stress begins is found by every rank, and bodies leave as wholes.
     let exchange = exchange.filter(|_| case.in_situ.is_none() && !case.excavates());
-    let (particle_sets, flat_faces, weibull, diagnostics) = Default::default();
-    let mut context = Context { case, mesh, exchange, division, particle_sets, flat_faces, weibull, diagnostics };
+    let (particle_sets, flat_faces, inlets, weibull, diagnostics) = Default::default();
+    let mut context =
+        Context { case, mesh, exchange, division, particle_sets, flat_faces, inlets, weibull, diagnostics };
     precheck::check_before_particles(&mut context);
     let built = context.build(prepared, facets);
     match built {
@@ -247,6 +252,7 @@ impl<'a> Context<'a> {
             .with_bonded(bonded)
             .with_ties(&ties.attachments)
             .with_surface_supports(surface_supports);
+        let scene = with_inlets(scene, std::mem::take(&mut self.inlets));
         let scene = interfaces::with_interfaces(self, scene, &parts, &numbering);
         let scene = liquid::with_liquid(self, scene, &numbering);
         warnings.extend(interfaces::doubts(self, &scene));

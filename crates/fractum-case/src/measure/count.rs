@@ -12,7 +12,8 @@ use crate::unit::Dimension as D;
 choice!(CountKind {
     "removed_elements" => RemovedElements, "broken_edges" => BrokenEdges, "damaged_edges" => DamagedEdges,
     "particles" => Particles, "fragments" => Fragments, "contacts" => Contacts,
-    "bonds" => Bonds, "broken_bonds" => BrokenBonds,
+    "bonds" => Bonds, "broken_bonds" => BrokenBonds, "entered_particles" => EnteredParticles,
+    "waiting_particles" => WaitingParticles, "left_pieces" => LeftPieces,
 });
 
 /// A count [-].

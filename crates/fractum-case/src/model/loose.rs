@@ -1,10 +1,10 @@
 //! Loose particles: spheres that nothing joins.
 
 use fractum_pack::Grading;
-use fractum_prepare::{Amount, Region};
+use fractum_prepare::{Amount, Region, Stream};
 
 use super::FileContent;
-use crate::{Field, Spanned};
+use crate::{Field, Place, Spanned};
 
 /// Loose particles of one material.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,5 +58,14 @@ pub enum LooseSource {
         amount: Spanned<Amount>,
         /// Seed of sizes and places.
         seed: u64,
+    },
+    /// Particles that come in through a region as time goes on.
+    Inlet {
+        /// What comes.
+        stream: Stream,
+        /// Place of the region.
+        region: Place,
+        /// Place of the rate.
+        rate: Place,
     },
 }

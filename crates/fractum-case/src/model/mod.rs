@@ -30,7 +30,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use fractum_output::expectation::Bound;
-pub use fractum_prepare::{Amount, BondLawKind, BondStrength, InterfaceArea, Interfaces, ParticleSize, Region};
+pub use fractum_pack::Sizes;
+pub use fractum_prepare::{
+    Amount, BondLawKind, BondStrength, InterfaceArea, Interfaces, ParticleSize, Rate, Region, Stream,
+};
 use fractum_scene::EnergyKind;
 
 pub use body::{Body, BodyKind, SolidBody};
@@ -234,6 +237,10 @@ const SUMMARY_QUANTITIES: &[(&str, Dimension)] = &[
     ("counts.broken_edges", Dimension::NONE),
     ("counts.damaged_edges", Dimension::NONE),
     ("counts.particles", Dimension::NONE),
+    ("counts.entered_particles", Dimension::NONE),
+    ("counts.waiting_particles", Dimension::NONE),
+    ("counts.most_waiting_particles", Dimension::NONE),
+    ("counts.left_pieces", Dimension::NONE),
     ("counts.contacts", Dimension::NONE),
     ("counts.bonds", Dimension::NONE),
     ("counts.broken_bonds", Dimension::NONE),
@@ -288,6 +295,12 @@ impl Case {
             let (name, set) = group.split_once('.')?;
             bonded(name).map(|body| (body, Some(set)))
         })
+    }
+
+    /// Whether particles come in as time goes on.
+    pub fn has_inlets(&self) -> bool {
+        let has_inlet = |own: &LooseBody| matches!(own.source, LooseSource::Inlet { .. });
+        self.bodies.iter().any(|body| matches!(&body.kind, BodyKind::Particles(own) if has_inlet(own)))
     }
 
     /// Number among the rigid bodies of the one with this name.

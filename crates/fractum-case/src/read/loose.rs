@@ -3,8 +3,8 @@
 use fractum_math::Vec3;
 
 use super::bonded::{DISPERSION_RANGE, file, frame, groups};
-use super::{sizes, unit};
-use crate::model::{Amount, LooseBody, LooseSource, Region};
+use super::{inlet, sizes, unit};
+use crate::model::{Amount, LooseBody, LooseSource, Region, Sizes};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{direction, initial_velocity, point};
@@ -21,6 +21,9 @@ enum Kind {
 /// Reads loose particles of the material at `material`, which is nothing where it is wrong.
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
     let source = if table.has("file") { from_file(table) } else { cloud(table) };
+    if table.has("inlet") {
+        table.refuse("groups", "beside inlet: where a particle comes in is not known before");
+    }
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
     Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity: initial_velocity? })
@@ -40,6 +43,7 @@ fn from_file(table: &Table<'_>) -> Option<LooseSource> {
         "sizes",
         "solid_fraction",
         "seed",
+        "inlet",
     ] {
         table.refuse(key, "beside a file of particles");
     }
@@ -92,7 +96,12 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
         dispersion.or_if_absent(0.0)
     };
     let grading = if graded { sizes::sizes(table).map(Some) } else { Some(None) };
-    let amount = if graded { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
+    let has_inlet = table.has("inlet");
+    if has_inlet {
+        table.refuse("solid_fraction", "beside inlet, whose rate says how many there are");
+    }
+    let amount =
+        if graded && !has_inlet { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
     let seed = table.integer("seed").or_if_absent(1);
     let region = match &kind {
         Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
@@ -101,6 +110,15 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
             None
         }
     };
+    if has_inlet {
+        let most = count.as_ref().map(|count| count.as_ref().map(|count| count.value));
+        let inlet = inlet::inlet(table, most.is_some_and(|most| most.is_some()));
+        let sizes = match grading? {
+            Some(grading) => Sizes::Graded(grading),
+            None => Sizes::Uniform { radius: radius?, dispersion: dispersion? },
+        };
+        return inlet?.source(region?, sizes, most?, seed?);
+    }
     if let Some(grading) = grading? {
         let (region, seed, count) = (region?, seed?, count?);
         let amount = count.map(|count| count.map(Amount::Count)).or(amount?)?;

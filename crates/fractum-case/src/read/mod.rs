@@ -14,6 +14,7 @@ mod gas;
 mod gauges;
 mod heat;
 mod in_situ;
+mod inlet;
 mod interface;
 pub(crate) mod interfaces;
 mod liquid;

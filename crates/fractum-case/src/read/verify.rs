@@ -170,6 +170,7 @@ impl Around<'_> {
                 },
                 BodyKind::Particles(loose) => match loose.source {
                     LooseSource::Cloud { seed, .. } | LooseSource::Graded { seed, .. } => Some(seed),
+                    LooseSource::Inlet { ref stream, .. } => Some(stream.seed),
                     LooseSource::File { .. } => None,
                 },
                 BodyKind::Solid(_) | BodyKind::Rigid(_) => None,

@@ -179,6 +179,7 @@ step = "0.1 us"
         shift_to_walls: Vec::new(),
         fraction: 0.6,
         fracture: None,
+        arrivals: None,
         replaced: Vec::new(),
     };
     let built =

@@ -304,6 +304,7 @@ end = "1 ms"
             shift_to_walls: Vec::new(),
             fraction: 0.6,
             fracture: Some(fracture),
+            arrivals: None,
             replaced: Vec::new(),
         };
         let built = build_scene(&case, &Mesh::default(), vec![made], Vec::new());

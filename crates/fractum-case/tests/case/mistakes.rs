@@ -452,7 +452,8 @@ fn each_mistake_has_one_clear_message() {
             "end = 1e-3",
             "end = 1e-3\n[[probes]]\nname = \"a\"\ncount = \"fragment\"",
             "17:9: probes[0].count = \"fragment\"; expected \"removed_elements\", \"broken_edges\", \"damaged_edges\", \
-             \"particles\", \"fragments\", \"contacts\", \"bonds\" or \"broken_bonds\"; did you mean \"fragments\"?",
+             \"particles\", \"fragments\", \"contacts\", \"bonds\", \"broken_bonds\", \"entered_particles\", \
+             \"waiting_particles\" or \"left_pieces\"; did you mean \"fragments\"?",
         ),
         (
             "end = 1e-3",

@@ -72,7 +72,7 @@ impl Fracture {
 
     /// Particles have left that touched nothing but each other: they keep no face against others.
     pub fn part_from_left(&mut self, particles: &Particles) {
-        let left = |i: u32| particles.has_left(i as usize);
+        let left = |i: u32| particles.is_out(i as usize);
         self.pairs.retain(|face| left(face.pair[0]) == left(face.pair[1]));
     }
 

@@ -42,7 +42,7 @@ pub struct Particles {
     pub mass: Vec<f64>,
     /// Moment of inertia about any axis [kg m²].
     pub inertia: Vec<f64>,
-    /// Radius [m]; negative once the particle [has left](Particles::let_leave).
+    /// Radius [m]; negative while the particle [is not in the run](Particles::take_out).
     pub radius: Vec<f64>,
     /// Bit d set: degree of freedom d (0–2 translation, 3–5 rotation) keeps its velocity whatever the forces.
     pub held: Vec<u8>,
@@ -94,16 +94,23 @@ impl Particles {
         self.position.is_empty()
     }
 
-    /// Takes a particle out of the run: it rests where it is for ever and meets nothing.
-    pub fn let_leave(&mut self, particle: usize) {
+    /// Takes a particle out of the run: it rests where it is and meets nothing.
+    pub fn take_out(&mut self, particle: usize) {
         self.velocity[particle] = Vec3::zeros();
         self.spin[particle] = Vec3::zeros();
         self.held[particle] = 0b11_1111;
         self.radius[particle] = -self.radius[particle].abs();
     }
 
-    /// Whether a particle is out of the run.
-    pub fn has_left(&self, particle: usize) -> bool {
+    /// Puts a particle that is out of the run into it: at rest at a place [m], free to move.
+    pub fn put_in(&mut self, particle: usize, place: Vec3) {
+        self.position[particle] = place;
+        self.held[particle] = 0;
+        self.radius[particle] = self.radius[particle].abs();
+    }
+
+    /// Whether a particle is out of the run: it has left, or has not come in yet.
+    pub fn is_out(&self, particle: usize) -> bool {
         self.radius[particle] < 0.0
     }
 

@@ -66,7 +66,7 @@ fn live_bonds(scene: &Scene, bodies: &[(i32, &BondedBody)]) -> Vec<LiveBond> {
         // Nor are the bonds of what has left drawn.
         let shown = |bond: &usize| {
             let [first, _] = part.bonds.pairs()[*bond];
-            part.bonds.is_live(*bond) && !all.has_left(first as usize)
+            part.bonds.is_live(*bond) && !all.is_out(first as usize)
         };
         (0..part.bonds.len()).filter(shown).map(live).collect::<Vec<_>>()
     };

@@ -21,7 +21,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
     if all.is_empty() {
         return None;
     }
-    let present: Vec<usize> = (0..all.len()).filter(|&i| !all.has_left(i)).collect();
+    let present: Vec<usize> = (0..all.len()).filter(|&i| !all.is_out(i)).collect();
     let mut text = String::new();
     // Writing to a String cannot fail.
     let _ = write!(text, "{}\nProperties={PROPERTIES} Time=", present.len());

@@ -91,6 +91,7 @@ fn with_interfaces(
         shares,
         walls: sample.packing.walls.clone(),
         domain: Some(sample.packing.domain.clone()),
+        arrivals: None,
         shift_to_walls: sample.packing.shift_to_walls(),
         fraction: sample.fraction,
         fracture: own.law.can_fail().then_some(fracture),

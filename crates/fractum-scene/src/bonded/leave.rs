@@ -11,7 +11,7 @@ impl Bonded {
     /// Whether some particle that is still in the run is wholly outside a box.
     pub(crate) fn has_outside(&self, domain: &Domain) -> bool {
         let all = &self.particles;
-        (0..all.len()).any(|i| !all.has_left(i) && domain.is_ball_outside(&all.position[i], all.radius[i]))
+        (0..all.len()).any(|i| !all.is_out(i) && domain.is_ball_outside(&all.position[i], all.radius[i]))
     }
 
     /// Lets every piece leave that bonds connect, also those that have separated by their law and may close again, that is wholly outside a box, that nothing holds, and that touches nothing.
@@ -60,13 +60,21 @@ impl Bonded {
             return;
         }
         for i in particles.iter().map(|&i| i as usize) {
-            self.particles.let_leave(i);
+            self.particles.take_out(i);
             for past in [&mut self.past.force, &mut self.past.moment] {
                 past.get_mut(i).into_iter().for_each(|past| *past = Vec3::zeros());
             }
         }
         for body in &mut self.bodies {
             body.fracture.iter_mut().for_each(|fracture| fracture.part_from_left(&self.particles));
+        }
+    }
+
+    /// Gives a particle that has come in the force of the moment as that of the step before, where damping looks at it.
+    pub(crate) fn let_past_be_present(&mut self, particle: usize) {
+        let Bonded { particles, past, .. } = self;
+        for (past, present) in [(&mut past.force, &particles.force), (&mut past.moment, &particles.moment)] {
+            past.get_mut(particle).into_iter().for_each(|past| *past = present[particle]);
         }
     }
 }

@@ -191,6 +191,10 @@ impl DebrisAmong {
     }
 
     /// Has the next search renew the list of pairs.
+    pub(super) fn admit_particle(&mut self, particle: u32, place: &Vec3) {
+        self.contacts.admit(particle, place);
+    }
+
     pub(super) fn look_again(&mut self) {
         self.contacts.look_again();
     }

@@ -17,7 +17,7 @@ mod servo;
 mod solid_surface;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
-use fractum_contact::{SphereContacts, Spheres, SurfaceContacts, Touch};
+use fractum_contact::{SphereContacts, Spheres, Surface, SurfaceContacts, Touch};
 use fractum_dem::{ParticleSubdomain, Particles};
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Vec3, Work};
@@ -90,6 +90,8 @@ pub struct Contacts {
     flat: FlatBodies,
     /// Largest radius of a particle [m].
     largest_radius: f64,
+    /// Skin of the searches [m].
+    skin: f64,
     /// Forces between bodies that probes ask for [N].
     watched: Vec<(ContactProbe, f64)>,
 }
@@ -160,7 +162,9 @@ impl Contacts {
             let pair = MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface));
             pair.sticking(adhesion(a.work_of_adhesion, b.work_of_adhesion))
         };
-        let smallest = bonded.particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+        // Particles that are to come in have negative radii.
+        let radii = || bonded.particles.radius.iter().map(|radius| radius.abs());
+        let smallest = radii().fold(f64::INFINITY, f64::min);
         let skin = SKIN * smallest;
         let on_tool = |rigid_body: &RigidBody| {
             let with = |m: &ContactMaterial| {
@@ -175,7 +179,7 @@ impl Contacts {
             let ContactMaterial { elastic, density, .. } = materials[body[i] as usize];
             let nu = elastic.poisson_ratio;
             let shear = elastic.young_modulus / (2.0 * (1.0 + nu));
-            let time = std::f64::consts::PI * bonded.particles.radius[i] * (density / shear).sqrt();
+            let time = std::f64::consts::PI * bonded.particles.radius[i].abs() * (density / shear).sqrt();
             2.0 / (share * time / (0.1631 * nu + 0.8766))
         });
         let meets =
@@ -195,7 +199,8 @@ impl Contacts {
             rigid_bodies,
             rayleigh_frequency,
             flat: FlatBodies::default(),
-            largest_radius: bonded.particles.radius.iter().copied().fold(0.0, f64::max),
+            largest_radius: radii().fold(0.0, f64::max),
+            skin,
             watched: Vec::new(),
         };
         contacts.reaching()
@@ -203,17 +208,48 @@ impl Contacts {
 
     /// The same with searches across the gaps in which its pairs stick.
     fn reaching(mut self) -> Self {
+        let of_particles = self.reach_of(&self.pairs);
+        self.among = self.among.map(|among| among.with_reach(of_particles));
+        let on_tools = std::mem::take(&mut self.on_tools);
+        let on_tool = |(contacts, pairs): (SurfaceContacts<Hertz>, Vec<MaterialPair>)| {
+            (contacts.with_reach(self.reach_of(&pairs)), pairs)
+        };
+        self.on_tools = on_tools.into_iter().map(on_tool).collect();
+        self
+    }
+
+    /// Gap across which these pairs of materials stick at most [m].
+    fn reach_of(&self, pairs: &[MaterialPair]) -> f64 {
         // The reach grows with the cube root of the radius; a hollow may be felt as a larger one.
         let largest = 8.0 * self.largest_radius;
-        let reach =
-            |pairs: &[MaterialPair]| pairs.iter().map(|pair| Hertz::new(pair, largest, 1.0).reach).fold(0.0, f64::max);
-        let of_particles = reach(&self.pairs);
-        self.among = self.among.map(|among| among.with_reach(of_particles));
-        let on_tool = |(contacts, pairs): (SurfaceContacts<Hertz>, Vec<MaterialPair>)| {
-            (contacts.with_reach(reach(&pairs)), pairs)
-        };
-        self.on_tools = self.on_tools.into_iter().map(on_tool).collect();
-        self
+        pairs.iter().map(|pair| Hertz::new(pair, largest, 1.0).reach).fold(0.0, f64::max)
+    }
+
+    /// Gap across which anything sticks at most [m].
+    pub(crate) fn reach(&self) -> f64 {
+        let on_tools = self.on_tools.iter().map(|(_, pairs)| self.reach_of(pairs));
+        on_tools.fold(self.reach_of(&self.pairs), f64::max)
+    }
+
+    /// Distance from everything at which a particle that comes in asks for no search before the next one: what moves uses up two skins
+    /// at most until then [m].
+    pub(crate) fn clearance(&self) -> f64 {
+        2.0 * self.skin
+    }
+
+    /// Takes a particle that was not there at a place with [clearance](Contacts::clearance).
+    pub(crate) fn admit_particle(&mut self, particle: u32, place: &Vec3, radius: f64) {
+        self.among.iter_mut().for_each(|among| among.admit(particle, place));
+        self.nodes.debris.iter_mut().for_each(|among| among.admit_particle(particle, place));
+        for (rigid_body, (contacts, _)) in self.rigid_bodies.iter().zip(&mut self.on_tools) {
+            contacts.admit(&rigid_body.ground(), particle, place);
+        }
+        self.solids.iter_mut().for_each(|ground| ground.admit_particle(particle, place, radius));
+    }
+
+    /// Rigid bodies and the surfaces of solids, where they were when forces were last found.
+    pub(crate) fn grounds(&self) -> impl Iterator<Item = Surface<'_>> {
+        self.rigid_bodies.iter().map(RigidBody::ground).chain(self.solids.iter().map(SolidSurface::ground))
     }
 
     /// Whether nothing can touch: no particles but those of one bonded body, and nothing else that they could meet.

@@ -86,7 +86,7 @@ impl Contacts {
             return;
         }
         if !particles.is_empty() {
-            let smallest = particles.radius.iter().copied().fold(f64::INFINITY, f64::min);
+            let smallest = particles.radius.iter().map(|radius| radius.abs()).fold(f64::INFINITY, f64::min);
             self.nodes.debris = Some(DebrisAmong::new(SKIN * smallest));
         }
         let piece = pieces(solid, joined);

@@ -115,6 +115,20 @@ impl SolidSurface {
         &self.contacts
     }
 
+    /// Takes a particle that was not there at a place away from it.
+    ///
+    /// - `radius`: of the particle [m]
+    pub(super) fn admit_particle(&mut self, particle: u32, place: &Vec3, radius: f64) {
+        let SolidSurface { mesh, points, velocity, contacts, felt, .. } = self;
+        felt.get_mut(particle as usize).into_iter().for_each(|felt| *felt = radius);
+        contacts.admit(&Surface::Deformable { surface: mesh, points, velocity }, particle, place);
+    }
+
+    /// Its facets, where they were when forces were last found.
+    pub(super) fn ground(&self) -> Surface<'_> {
+        Surface::Deformable { surface: &self.mesh, points: &self.points, velocity: &self.velocity }
+    }
+
     pub(super) fn mesh(&self) -> &FacetMesh {
         &self.mesh
     }
@@ -155,8 +169,8 @@ impl SolidSurface {
     ///
     /// - `radii`: of the particles; negative ones of those that have left [m]
     pub(super) fn look_again(&mut self, radii: &[f64]) {
-        let gone = self.felt.iter_mut().zip(radii).filter(|(_, radius)| **radius < 0.0);
-        gone.for_each(|(felt, radius)| *felt = *radius);
+        let changed = self.felt.iter_mut().zip(radii).filter(|(felt, radius)| **felt < 0.0 || **radius < 0.0);
+        changed.for_each(|(felt, radius)| *felt = *radius);
         self.contacts.look_again();
     }
 

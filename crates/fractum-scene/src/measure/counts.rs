@@ -1,6 +1,7 @@
 //! How many there are of everything in a scene.
 
 use crate::contacts::NodesOnShape;
+use crate::enter::{entered_of, inlets_of};
 use crate::scene::Scene;
 use fractum_fem::{cracks, neighbours};
 
@@ -16,6 +17,9 @@ pub enum CountKind {
     Contacts,
     Bonds,
     BrokenBonds,
+    EnteredParticles,
+    WaitingParticles,
+    LeftPieces,
 }
 
 /// What there is of everything.
@@ -31,6 +35,12 @@ pub struct Counts {
     pub contacts: usize,
     pub bonds: usize,
     pub broken_bonds: usize,
+    /// Those that have come in through inlets.
+    pub entered_particles: usize,
+    /// Those that are due and have no free place in their inlet.
+    pub waiting_particles: usize,
+    /// Free pieces that have left the domain.
+    pub left_pieces: usize,
 }
 
 impl Counts {
@@ -42,6 +52,9 @@ impl Counts {
             CountKind::Contacts => self.contacts,
             CountKind::Bonds => self.bonds,
             CountKind::BrokenBonds => self.broken_bonds,
+            CountKind::EnteredParticles => self.entered_particles,
+            CountKind::WaitingParticles => self.waiting_particles,
+            CountKind::LeftPieces => self.left_pieces,
             CountKind::Fragments | CountKind::BrokenEdges | CountKind::DamagedEdges => 0,
         }
     }
@@ -56,7 +69,11 @@ impl Scene {
             removed_elements: cracks::removed_count(&self.solid) - self.removals.left.elements,
             crushed_elements: self.removals.tally.crushed,
             particles: self.debris.len() + self.bonded.particles.len()
-                - self.removals.left.particles(self.solid.reference.len()).count(),
+                - self.removals.left.particles(self.solid.reference.len()).count()
+                - inlets_of(self).iter().map(|inlet| inlet.outside().len()).sum::<usize>(),
+            entered_particles: entered_of(self).particles,
+            waiting_particles: entered_of(self).waiting,
+            left_pieces: self.removals.left.pieces,
             bonds: self.bonded.bond_counts().0,
             broken_bonds: self.bonded.bond_counts().1,
             contacts: self.debris.touching().count()

@@ -7,7 +7,7 @@ use fractum_math::{Rotation, Vec3};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Points, Population, mean};
-use crate::leave::has_left;
+use crate::leave::is_out;
 use crate::measure::probe::{Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
@@ -90,10 +90,10 @@ impl GaugeGrid {
     /// The readings of the present instant, in the order of the places. Those with a point that has left the run have no numbers.
     pub fn readings(&self, scene: &Scene) -> Vec<GaugeReading> {
         let all = points_of(&scene.bonded, &scene.solid, self.population);
-        let has_left = has_left(scene, self.population);
+        let is_out = is_out(scene, self.population);
         let reading = |gauge: &Gauge| {
             let reading = gauge.reading(|i| all.displacement(i));
-            if gauge.points.iter().any(|&i| has_left(i)) {
+            if gauge.points.iter().any(|&i| is_out(i)) {
                 return GaugeReading { displacement: Vec3::repeat(f64::NAN), strain: [f64::NAN; 6], ..reading };
             }
             reading
@@ -160,8 +160,8 @@ impl Probe for Extensometer {
     /// point of a foot has left the run.
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        let has_left = has_left(scene, self.population);
-        if self.feet.iter().flatten().any(|&i| has_left(i)) {
+        let is_out = is_out(scene, self.population);
+        if self.feet.iter().flatten().any(|&i| is_out(i)) {
             return f64::NAN;
         }
         let (all, dt) = (points_of(&scene.bonded, &scene.solid, self.population), scene.clock.dt_before);

@@ -4,7 +4,7 @@ use fractum_dem::crack_shape::Axis;
 use fractum_math::Vec3;
 
 use crate::conditions::{Along, Points, Population, Supports, mean};
-use crate::leave::has_left;
+use crate::leave::is_out;
 use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
@@ -69,8 +69,8 @@ impl PointProbe {
     }
 
     /// Value at the last step; `dt` is the step that followed it [s]. Not a number once all points have left the run.
-    fn value(&self, population: &impl Points, supports: &Supports, dt: f64, has_left: impl Fn(u32) -> bool) -> f64 {
-        let present = |point: &u32| !has_left(*point);
+    fn value(&self, population: &impl Points, supports: &Supports, dt: f64, is_out: impl Fn(u32) -> bool) -> f64 {
+        let present = |point: &u32| !is_out(*point);
         let displacement = |i: usize| population.displacement_before(i, dt);
         match self {
             PointProbe::Reaction { places, along: Along::Direction(direction) } => supports.reaction(places, direction),
@@ -93,7 +93,7 @@ impl PointProbe {
                 |i| population.position(i),
                 |i| *population.velocity(i),
             ),
-            PointProbe::Rotation { points, .. } if points.iter().any(|&point| has_left(point)) => f64::NAN,
+            PointProbe::Rotation { points, .. } if points.iter().any(|&point| is_out(point)) => f64::NAN,
             PointProbe::Rotation { points, axis } => {
                 let centre = mean(points, |i| *population.reference(i));
                 let shift = mean(points, displacement);
@@ -146,10 +146,10 @@ impl ProbeOfPoints {
 impl Probe for ProbeOfPoints {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        let (dt, has_left) = (scene.clock.dt_before, has_left(scene, self.population));
+        let (dt, is_out) = (scene.clock.dt_before, is_out(scene, self.population));
         match self.population {
-            Population::Nodes => self.probe.value(&scene.solid, scene.supports(), dt, has_left),
-            Population::Particles => self.probe.value(&scene.bonded, scene.bonded.supports(), dt, has_left),
+            Population::Nodes => self.probe.value(&scene.solid, scene.supports(), dt, is_out),
+            Population::Particles => self.probe.value(&scene.bonded, scene.bonded.supports(), dt, is_out),
         }
     }
 

@@ -5,7 +5,7 @@ use fractum_math::{Rotation, Vec3, rotation_by, sphere_volume};
 
 use crate::bonded::Bonded;
 use crate::conditions::{Along, Points, Population};
-use crate::leave::has_left;
+use crate::leave::is_out;
 use crate::measure::probe::{NeededPoints, Probe, ProbeNeeds, ProbedScene};
 use crate::scene::Scene;
 
@@ -56,7 +56,7 @@ impl Probe for RegionStress {
     /// number once a particle of the set has left the run.
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        if self.set.iter().copied().any(has_left(scene, Population::Particles)) {
+        if self.set.iter().copied().any(is_out(scene, Population::Particles)) {
             return f64::NAN;
         }
         let ([normal, along], bonded) = (&self.between, &scene.bonded);
@@ -118,7 +118,7 @@ impl Probe for RegionStrain {
     /// The component [-], at the instant of the last step. Not a number once a point of the set has left the run.
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
         let scene = probed.scene;
-        if self.gauge.points().any(has_left(scene, self.population)) {
+        if self.gauge.points().any(is_out(scene, self.population)) {
             return f64::NAN;
         }
         let dt = scene.clock.dt_before;

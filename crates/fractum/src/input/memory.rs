@@ -56,7 +56,7 @@ pub(crate) fn check_memory(case: &Case, mesh: &Mesh, processes: Processes) -> Re
                 (count, of, each * (1.0 - shared + shared / processes.all as f64))
             }
             BodyKind::Bonded(own) => (bonded(own), "particles", BONDED_PARTICLE),
-            BodyKind::Particles(own) => (loose(own), "particles", LOOSE_PARTICLE),
+            BodyKind::Particles(own) => (loose(own, case.materials[own.material].density), "particles", LOOSE_PARTICLE),
             BodyKind::Rigid(_) => (0.0, "facets", 0.0),
         };
         (count * each, &body.name.value, count, of)
@@ -91,8 +91,11 @@ fn bonded(body: &BondedBody) -> f64 {
     FILLED * volume / sphere_volume(radius)
 }
 
-/// Particles of a cloud.
-fn loose(body: &LooseBody) -> f64 {
+/// Particles of a cloud, or of a stream of a density [kg/m³].
+fn loose(body: &LooseBody, density: f64) -> f64 {
+    if let LooseSource::Inlet { stream, .. } = &body.source {
+        return stream.count(density);
+    }
     if let LooseSource::Graded { region, grading, amount, .. } = &body.source {
         return graded_count(&region.value, grading, amount.value);
     }

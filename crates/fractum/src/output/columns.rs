@@ -4,8 +4,8 @@ use fractum_case::build::BuiltScene;
 use fractum_case::model::{Body, BodyKind, Case, SolverKind};
 use fractum_output::columns::HistoryColumns;
 use fractum_output::history::Column;
-use fractum_scene::Scene;
 use fractum_scene::statics::{Control, NoEquilibrium};
+use fractum_scene::{Scene, inlets_of};
 
 /// How a run proceeds.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,6 +40,7 @@ pub(crate) fn possible_columns(case: &Case) -> Vec<Column> {
     let columns = HistoryColumns {
         particles: case.bodies.iter().any(is_particles),
         domain: may_lose(case),
+        inlets: case.has_inlets(),
         heat: case.flows.heat.is_some(),
         turns_back: stages.any(|stage| matches!(stage.solver.kind, SolverKind::Static | SolverKind::Auto)),
         in_motion: both_rests_and_moves(case),
@@ -66,6 +67,7 @@ pub(crate) fn no_probes(case: &Case, scene: &Scene, course: Course) -> HistoryCo
     HistoryColumns {
         particles: !scene.bonded.is_empty(),
         domain: may_lose(case),
+        inlets: !inlets_of(scene).is_empty(),
         heat: scene.heat().is_some(),
         turns_back: course.turns_back,
         in_motion: both_rests_and_moves(case),

@@ -8,7 +8,7 @@ use fractum_case::model::{Case, Expect, ProbeKind};
 use fractum_fem::{BodyState, Solid, cracks, neighbours};
 use fractum_output::expectation::Expectation;
 use fractum_output::summary::{self, Status, Summary};
-use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, passing_size};
+use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, entered_of, passing_size};
 use serde::Serialize;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -29,6 +29,10 @@ pub(crate) fn of_scene(scene: &Scene) -> Summary {
             removed_elements: counts.removed_elements as u64,
             crushed_elements: counts.crushed_elements as u64,
             particles: counts.particles as u64,
+            entered_particles: counts.entered_particles as u64,
+            waiting_particles: counts.waiting_particles as u64,
+            most_waiting_particles: entered_of(scene).most_waiting as u64,
+            left_pieces: counts.left_pieces as u64,
             bonds: counts.bonds as u64,
             broken_bonds: counts.broken_bonds as u64,
             broken_edges: fracture.broken_edges as u64,

@@ -3,7 +3,8 @@
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
 use fractum_case::model::{
-    BodyKind, Case, LooseSource, Material, RigidBody, RigidShape, ServoForce, SolidBody, SolverKind,
+    BodyKind, Case, LooseSource, Material, Rate, RigidBody, RigidShape, ServoForce, Sizes, SolidBody, SolverKind,
+    Stream,
 };
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
@@ -42,7 +43,9 @@ impl Plan {
                     let found = scene.bonded.bodies().iter().find(|part| part.name == body.name.value);
                     if let Some(part) = found {
                         let all = &scene.bonded.particles;
-                        let (radius, mass) = (&all.radius[part.range.clone()], &all.mass[part.range.clone()]);
+                        // Those that are to come in have negative radii.
+                        let radius: Vec<f64> = all.radius[part.range.clone()].iter().map(|r| r.abs()).collect();
+                        let mass = &all.mass[part.range.clone()];
                         let of =
                             |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
                         let text = format!(
@@ -59,8 +62,15 @@ impl Plan {
                             true => format!("{text}, work of adhesion {}", quantity(energy, "J/m^2")),
                             false => text,
                         };
-                        let graded = matches!(loose.source, LooseSource::Graded { .. });
-                        self.add("body", if graded { text + &passing(radius) } else { text });
+                        let graded = match &loose.source {
+                            LooseSource::Graded { .. } => true,
+                            LooseSource::Inlet { stream, .. } => matches!(stream.sizes, Sizes::Graded(_)),
+                            _ => false,
+                        };
+                        self.add("body", if graded { text + &passing(&radius) } else { text });
+                        if let LooseSource::Inlet { stream, .. } = &loose.source {
+                            self.add("", stream_in_words(stream));
+                        }
                     }
                 }
                 BodyKind::Rigid(rigid) => self.describe_rigid(case, scene, &body.name.value, rigid),
@@ -380,6 +390,16 @@ fn criterion_text(criterion: &BondCriterion) -> String {
         text += &format!(", friction angle {:.1} deg", numbers.friction_angle.to_degrees());
     }
     text
+}
+
+/// How particles come in.
+fn stream_in_words(stream: &Stream) -> String {
+    let rate = match stream.rate {
+        Rate::Mass(rate) => quantity(rate, "kg/s"),
+        Rate::Number(rate) => format!("{} particles", quantity(rate, "1/s")),
+    };
+    let end = stream.until.map_or_else(|| "all are in".to_owned(), |until| quantity(until, "s"));
+    format!("come in through an inlet: {rate} from {} until {end}", quantity(stream.from, "s"))
 }
 
 /// Diameters below which shares of the mass of spheres lie.

@@ -480,6 +480,12 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
             format!("an injection has drawn {} more than there was", quantity(*value, "m^3")),
             "end its negative rate before, or give a pressure, which draws no more than there is",
         ),
+        Notice::InletBlocked => (
+            Code::InletBlocked,
+            format!("it waits with {} more: its inlet has no free place", value - 1.0),
+            "the rate is not kept: take a lower one, a larger or deeper inlet or a faster initial_velocity; the columns waiting_particles and \
+             entered_mass of the history tell how it goes on",
+        ),
         Notice::Overlap => (
             Code::DeepOverlap,
             format!(
