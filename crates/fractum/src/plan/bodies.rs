@@ -396,7 +396,7 @@ fn criterion_text(criterion: &BondCriterion) -> String {
 fn stream_in_words(stream: &Stream) -> String {
     let rate = match stream.rate {
         Rate::Mass(rate) => quantity(rate, "kg/s"),
-        Rate::Number(rate) => format!("{} particles", quantity(rate, "1/s")),
+        Rate::Number(rate) => format!("{rate} particles per second"),
     };
     let end = stream.until.map_or_else(|| "all are in".to_owned(), |until| quantity(until, "s"));
     format!("come in through an inlet: {rate} from {} until {end}", quantity(stream.from, "s"))
