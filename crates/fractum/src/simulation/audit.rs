@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use fractum_case::Case;
 use fractum_case::model::{BodyKind, Probe, ProbeInput, ProbeKind};
 use fractum_fem::{RateReport, cracks, motion, neighbours, rate_report};
 use fractum_math::Vec3;
@@ -12,6 +13,7 @@ use fractum_scene::{Notice, Noticed, Scene, Site};
 
 use super::{End, Simulation};
 use crate::error::Failure;
+use crate::output::record::Recorder;
 use crate::output::summary::probes;
 
 /// Steps of motion between two looks at the state, of a short run and of a long one: a look costs about two steps.
@@ -102,7 +104,7 @@ impl Simulation {
         if matches!(end, End::Finished(_)) {
             self.warn_of_servos()?;
             self.warn_of_idle_probes()?;
-            self.warn_of_undefined_probes()?;
+            undefined_probes(&self.case, &self.recorder).into_iter().try_for_each(|found| self.warn(found))?;
         }
         Ok(match (end, self.end.take()) {
             (End::Finished(_), Some(strict)) => strict,
@@ -327,31 +329,6 @@ impl Simulation {
         self.warn(found)
     }
 
-    /// Warns of expressions of probes that were infinite, or had no value at any instant, though all that they take had good ones.
-    fn warn_of_undefined_probes(&mut self) -> Result<(), Failure> {
-        let summaries = probes(&self.case, &self.recorder);
-        let is_good =
-            |probe: &Probe| summaries.get(&probe.name.value).is_none_or(|of| of.min.is_finite() && of.max.is_finite());
-        let undefined = self.case.probes.iter().filter(|probe| match &probe.kind {
-            ProbeKind::Expression(expression) if !is_good(probe) => expression.inputs.iter().all(|input| match input {
-                ProbeInput::Probe { probe, .. } => is_good(&self.case.probes[*probe]),
-                ProbeInput::Time => true,
-            }),
-            _ => false,
-        });
-        let found = undefined.map(|probe| {
-            let name = &probe.name.value;
-            let text = match summaries[name].max.is_nan() {
-                true => "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants",
-                false => "it is infinite at an instant: something is divided by zero",
-            };
-            let found = Warning::new(Code::Undefined, format!("probe \"{name}\""), text);
-            found.remedy("look at the values that its expression takes (history.csv)")
-        });
-        let found: Vec<Warning> = found.collect();
-        found.into_iter().try_for_each(|found| self.warn(found))
-    }
-
     /// Warns of the first of a kind.
     pub(super) fn warn_once(&mut self, warning: Warning) -> Result<(), Failure> {
         let told = self.messages.warnings().iter().any(|before| before.code == warning.code);
@@ -376,6 +353,32 @@ const AT_BORDERS: f64 = 0.2;
 /// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
 const MOSTLY_SINGLE: f64 = 0.5;
 const VISIBLY_SINGLE: f64 = 0.05;
+
+/// Expressions of probes that were infinite, or had no value at any instant, though all that they take had good ones.
+fn undefined_probes(case: &Case, recorder: &Recorder) -> Vec<Warning> {
+    let summaries = probes(case, recorder);
+    let is_good =
+        |probe: &Probe| summaries.get(&probe.name.value).is_none_or(|of| of.min.is_finite() && of.max.is_finite());
+    let is_undefined = |probe: &&Probe| match &probe.kind {
+        ProbeKind::Expression(expression) if !is_good(probe) => expression.inputs.iter().all(|input| match input {
+            ProbeInput::Probe { probe, .. } => is_good(&case.probes[*probe]),
+            ProbeInput::Time => true,
+        }),
+        _ => false,
+    };
+    let told = |probe: &Probe| {
+        let name = &probe.name.value;
+        let text = match summaries[name].max.is_nan() {
+            true => {
+                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants"
+            }
+            false => "it is infinite at an instant: something is divided by zero",
+        };
+        let found = Warning::new(Code::Undefined, format!("probe \"{name}\""), text);
+        found.remedy("look at the values that its expression takes (history.csv)")
+    };
+    case.probes.iter().filter(is_undefined).map(told).collect()
+}
 
 /// What the scene noticed, in words.
 ///
