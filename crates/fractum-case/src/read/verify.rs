@@ -1,5 +1,7 @@
 //! `[verify]`: the neighbours of a case, and what its references promise of them.
 
+use fractum_pack::Arrangement;
+
 use super::{names, parameters};
 use crate::model::{
     Body, BodyKind, Expect, JointSource, LooseSource, Material, MeshSource, NEIGHBOURS, Neighbour, PackingSource,
@@ -165,7 +167,7 @@ impl Around<'_> {
         for (index, body) in self.bodies.into_iter().flatten().enumerate() {
             let seed = match &body.kind {
                 BodyKind::Bonded(bonded) => match bonded.packing {
-                    PackingSource::Shape { seed, .. } => Some(seed),
+                    PackingSource::Shape { seed, arrangement: Arrangement::Random, .. } => Some(seed),
                     _ => None,
                 },
                 BodyKind::Particles(loose) => match loose.source {
