@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use fractum_math::Vec3;
 use fractum_mesh::MshFormat;
-use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::generate::{structured_box, structured_rectangle};
 use serde_json::Value;
 
 use crate::common::{Workplace, history, mesh_bytes, resumed, run, summary};
@@ -161,6 +162,44 @@ fn liquid_lets_an_inclined_joint_slide_as_its_effective_stress_falls() {
         // Elements at the tips make the joint too short, by some part of themselves; the sides, five of its lengths away, add some percent.
         let found = 2.0 * rubbed(&fine, "1 MPa") - rubbed(&coarse, "1 MPa");
         assert!((found / exact - 1.0).abs() < 0.06, "{nu}: {found} {exact}");
+    }
+}
+
+/// In space: a disc in a cube, under the stress of the solids or the pressure that makes it, whatever presses along it.
+#[test]
+fn in_situ_stress_opposes_the_liquid_in_a_disc_too() {
+    let mesh = structured_box([10, 10, 10], Vec3::repeat(4.0), None);
+    let mesh = mesh_bytes(&mesh, MshFormat::V4_1Binary);
+    let (first, last) = (INCLINED.find("[in_situ]").unwrap(), INCLINED.find("[solver]").unwrap());
+    let cube = INCLINED
+        .replace("[[\"1.7171573 m\", \"1.7171573 m\", \"2.2828427 m\", \"2.2828427 m\"]]", "[[\"2 m\", \"2 m\", \"2 m\", \"0 deg\", \"0 deg\", \"2.6 m\"]]")
+        .replace("plane = \"strain\"\nthickness = \"1 m\"\n", "")
+        .replace("residual_friction_angle = \"30 deg\"", "normal_stiffness = \"1e15 Pa/m\"\nshear_stiffness = \"1e15 Pa/m\"")
+        .replace(&INCLINED[first..last], "STRESS[liquid]\nviscosity = \"0.01 Pa s\"\n[[liquid.injections]]\ngroup = \"joint\"\nwhere = \"hypot(x - 2 m, y - 2 m) < 0.1 m\"\nrate = \"1e-5 m^3/s\"\n\
+            [[supports]]\nwhere = \"hypot(x, y) + z < 1 mm\"\nfix = \"xyz\"\n[[supports]]\nwhere = \"hypot(x - 4 m, y) + z < 1 mm\"\nfix = \"yz\"\n[[supports]]\nwhere = \"hypot(x, y - 4 m) + z < 1 mm\"\nfix = \"z\"\n")
+        .replace("name = \"rubbed\"\nenergy = \"friction\"", "name = \"opening\"\nliquid = \"aperture\"\n[[probes]]\nname = \"pressure\"\nliquid = \"pressure\"\n[[probes]]\nname = \"area\"\nliquid = \"wetted_area\"");
+    let before = |across: &str, along: &str| {
+        format!(
+            "[in_situ]\nstress = {{ xx = \"-{along}\", yy = \"-{along}\", zz = \"-{across}\" }}\ngroups = [\"x-\", \"x+\", \"y-\", \"y+\", \"z-\", \"z+\"]\n"
+        )
+    };
+    let loaded = |group: &str, pressure: &str| format!("[[loads]]\ngroup = \"{group}\"\npressure = \"{pressure}\"\n");
+    let loads: String =
+        [("x-", "1 MPa"), ("x+", "1 MPa"), ("y-", "1 MPa"), ("y+", "1 MPa"), ("z-", "3 MPa"), ("z+", "3 MPa")]
+            .map(|(group, pressure)| loaded(group, pressure))
+            .concat();
+    let of = |stress: &str| {
+        probes(
+            &run_with(&Workplace::with_mesh(&cube.replace("STRESS", stress), &mesh), &[]),
+            ["opening", "pressure", "area"],
+        )
+    };
+    let one = of(&before("3 MPa", "1 MPa"));
+    assert!(one[1] > 3e6 && one[2] > 0.1, "{one:?}");
+    for other in [of(&loads), of(&before("3 MPa", "9 MPa"))] {
+        for (one, other) in one.iter().zip(other) {
+            assert!((other / one - 1.0).abs() < 1e-5, "{one} {other}");
+        }
     }
 }
 

@@ -2,9 +2,13 @@
 
 use std::fs;
 
+use fractum_math::Vec3;
+use fractum_mesh::MshFormat;
+use fractum_mesh::generate::structured_box;
 use serde_json::Value;
 
-use crate::common::{Workplace, history, resumed, run};
+use crate::common::{Workplace, history, mesh_bytes, resumed, run};
+use crate::ranks::{on_ranks, options};
 
 /// Beads that come in and fall; `INLET`, `MORE` and `END` are put in.
 const STREAM: &str = r#"fractum = 1
@@ -179,6 +183,29 @@ fn particles_without_a_free_place_wait_and_are_told() {
     assert!(number(&run, &["largest_overlap", "share"]) < 0.2, "{}", run["largest_overlap"]);
 }
 
+/// A held block of 80 g bears what has come to rest on it, within a fence of rigid walls.
+#[test]
+fn a_solid_bears_what_falls_on_it() {
+    let block = "[mesh]\nfile = \"bar.msh\"\n[materials.stone]\ndensity = \"2500 kg/m^3\"\nyoung_modulus = \"5 MPa\"\npoisson_ratio = 0.2\n\
+        contact = { friction = 0.4, rolling_friction = 0.02, restitution = 0.3 }\n\
+        [[bodies]]\nname = \"block\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stone\"\n\
+        [[bodies]]\nname = \"fence\"\nkind = \"rigid\"\nshape = \"box\"\ninside = true\npoint = [\"-1 mm\", \"-1 mm\", \"-20 mm\"]\nsize = [\"42 mm\", \"42 mm\", \"150 mm\"]\n\
+        [[supports]]\ngroup = \"z-\"\nfix = \"xyz\"\n\
+        [[probes]]\nname = \"borne\"\nreaction = { group = \"z-\", along = \"z\" }\n";
+    let inlet = "initial_velocity = { z = \"-0.5 m/s\" }\ninlet = { number_rate = \"2000 1/s\", until = \"0.1 s\" }";
+    let text = STREAM.replace("INLET", inlet).replace("MORE", block).replace("END", "0.5 s");
+    let text = text.replace("point = [\"-10 mm\", \"-10 mm\", \"50 mm\"]", "point = [\"10 mm\", \"10 mm\", \"50 mm\"]");
+    let mesh = structured_box([6, 6, 3], Vec3::new(0.04, 0.04, 0.02), None);
+    let place = Workplace::with_mesh(&text, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let one = run(&place, "one", "1");
+    assert!(number(&one, &["energy", "residual_max_relative"]) < 1e-3, "{}", one["energy"]);
+    let rows = history(&place, "one", &["time", "borne", "entered_mass"]);
+    let late: Vec<&Vec<f64>> = rows.iter().filter(|row| row[0] > 0.4).collect();
+    let mean = late.iter().map(|row| row[1]).sum::<f64>() / late.len() as f64;
+    let weight = 9.81 * (2500.0 * 0.04 * 0.04 * 0.02 + late[0][2]);
+    assert!((mean / weight - 1.0).abs() < 0.02 && late[0][2] > 1e-3, "{mean} {weight}");
+}
+
 #[test]
 fn streams_that_cannot_be_are_refused_with_their_place() {
     let cases = [
@@ -207,6 +234,14 @@ fn streams_that_cannot_be_are_refused_with_their_place() {
         assert_eq!(ended.code, Some(1), "{more}: {}", ended.stderr);
         assert!(ended.stderr.contains(expected), "{more}: {}", ended.stderr);
     }
+    let text = STREAM.replace("INLET", inlet).replace("MORE", "").replace("END", "0.1 s");
+    let at_rest =
+        Workplace::new(&text.replace("[solver]\n", "[solver]\nkind = \"static\"\n")).fractum(&["check", "case.toml"]);
+    assert!(at_rest.code == Some(1) && at_rest.stderr.contains("come in as time goes on"), "{}", at_rest.stderr);
+    let place = Workplace::new(&text);
+    let shared = on_ranks(&place, 2, &options(&place, "shared"));
+    let words = shared[0].as_ref().unwrap_err().to_string();
+    assert!(words.contains("come in through an inlet cannot be run by several"), "{words}");
     let far = STREAM.replace("INLET", inlet).replace("MORE", "").replace("END", "0.1 s");
     let far =
         far.replace("[solver]\n", "[solver]\ndomain = { min = [0, 0, 0], max = [\"1 mm\", \"1 mm\", \"1 mm\"] }\n");

@@ -167,6 +167,15 @@ fn a_case_with_every_key_is_read_into_si() {
 }
 
 #[test]
+fn a_parameter_may_have_the_name_of_a_reduction() {
+    let probes = "[[probes]]\nname = \"tip\"\ndisplacement = { group = \"bar\", along = \"x\" }\n\
+        [[probes]]\nname = \"rate\"\nexpression = \"slope*slope(tip, 1 us) + mean*mean(tip)/1 s\"\nunit = \"m/s\"\n";
+    let case = good(&(format!("{SMALL}[parameters]\nslope = 3.0\nmean = 2.0\n") + probes), &[]);
+    let ProbeKind::Expression(rate) = &case.probes[1].kind else { panic!() };
+    assert_eq!(rate.value(&[5.0, 7.0]), 3.0 * 5.0 + 2.0 * 7.0);
+}
+
+#[test]
 fn risky_settings_are_warned_of() {
     let warned = |text: &str| {
         let case = good(text, &[]);
