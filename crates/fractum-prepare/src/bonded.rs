@@ -34,6 +34,9 @@ const CONTACTS: f64 = 6.2;
 /// What to do about a packing that misses its targets.
 const REFUSED: &str = "fractum pack shows the whole certificate, and with --keep it writes a packing that the key packing takes all the same";
 
+/// What to know about a packing of the user's that misses them.
+const GIVEN: &str = "its elastic constants are calibrated on itself; its strength may depend on the direction";
+
 /// Where something came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
@@ -224,8 +227,13 @@ impl Maker<'_> {
         if from != Origin::Given {
             return Err(Fault::new(At::Body, error).remedy(REFUSED));
         }
-        let remedy = "fractum pack shows the whole certificate";
-        Ok(Some(Doubt { code: Code::Packing, found: error.to_string(), remedy }))
+        let found = match error {
+            PackError::Refused { target, reached, .. } => {
+                format!("the packing that was given misses its target: {target}; reached {reached}")
+            }
+            other => other.to_string(),
+        };
+        Ok(Some(Doubt { code: Code::Packing, found, remedy: GIVEN }))
     }
 
     /// Bonds a packing with beams that are given, kept or found now, to the coordination that it returns.

@@ -47,7 +47,8 @@ pub(super) fn check_name(reader: &Reader, name: &str, place: &Place) {
         let note = Diagnostic::error(place, "is not a name an expression can use");
         reader.note(note.remedy("begin with a letter and go on with letters, digits and underscores"));
     } else if ["t", "x", "y", "z", "pi"].contains(&name) || functions().any(|function| function == name) {
-        reader.note(Diagnostic::error(place, "has a name that expressions use for something else").remedy("rename it"));
+        let found = format!("is called {name}, which expressions use for something else");
+        reader.note(Diagnostic::error(place, found).remedy("rename it"));
     }
 }
 

@@ -22,9 +22,9 @@ impl Plan {
         self.add(
             "time step",
             format!(
-                "{} ({} of the stable {}), governed by {governing}{shorter}",
+                "{} ({} the stable {}), governed by {governing}{shorter}",
                 quantity(scene.clock.dt_after, "s"),
-                case.solver.step.as_ref().map_or_else(|| format!("{}", case.solver.safety), |_| "fixed; ".to_owned()),
+                if case.solver.step.is_some() { "fixed, below".to_owned() } else { format!("{} of", case.solver.safety) },
                 quantity(scene.stable_dt(), "s")
             ),
         );
