@@ -387,8 +387,11 @@ impl Core {
                     return Err(Failure::input(format!("no solid body {body}")));
                 }
                 // On threads of their own: those of the steps may wait for what holds the simulation here.
-                let fields =
-                    if computed { self.looks.install(|| fields::element_fields(solid, body)) } else { Vec::new() };
+                let fields = if computed {
+                    self.looks.install(|| fields::element_fields(solid, body, None))
+                } else {
+                    Vec::new()
+                };
                 let alive = if computed { Vec::new() } else { solid.alive(body).to_vec() };
                 Ok((alive, fields))
             })

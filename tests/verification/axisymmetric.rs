@@ -50,7 +50,7 @@ fn even_stretches_give_one_stress_and_no_inner_force() {
         let stress = |strain: f64| lambda * (2.0 * radial + axial) + 2.0 * mu * strain;
         let expected = [stress(radial), stress(axial), stress(radial), 0.0, 0.0, 0.0];
         let name = format!("{inner} {formulation:?} {kinematics:?}");
-        for (found, _) in fields::element_fields(&solid, 0) {
+        for (found, _) in fields::element_fields(&solid, 0, None) {
             for (found, wanted) in found.0.iter().zip(expected) {
                 assert!((found - wanted).abs() < 1e-11 * stress(radial), "{name}: {found} for {wanted}");
             }
@@ -115,7 +115,7 @@ fn a_pressure_all_around_gives_that_pressure_everywhere() {
         while !solver.is_finished(&scene) {
             solver.step(&mut scene).unwrap();
         }
-        for (stress, _) in fields::element_fields(&scene.solid, 0) {
+        for (stress, _) in fields::element_fields(&scene.solid, 0, None) {
             for (found, wanted) in stress.0.into_iter().zip([-PRESSURE, -PRESSURE, -PRESSURE, 0.0, 0.0, 0.0]) {
                 assert!((found - wanted).abs() < 1e-8 * PRESSURE, "{inner} {formulation:?}: {stress:?}");
             }

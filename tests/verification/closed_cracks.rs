@@ -146,7 +146,7 @@ fn a_patch_that_is_torn_closes_and_slides_by_coulombs_law() {
         for (number, [from, to]) in [[0.0, far], [far, -far]].into_iter().enumerate() {
             let before = rubbed_energy(&solid);
             go(&mut solid, [[-gap, from], [-gap, to]], 4000);
-            for (stress, _) in fields::element_fields(&solid, 0) {
+            for (stress, _) in fields::element_fields(&solid, 0, None) {
                 let [_, normal, _, shear, ..] = stress.0;
                 let friction = specimen.friction * pressure * (to - from).signum();
                 let off = (normal + pressure).abs().max((shear - friction).abs());
@@ -163,11 +163,11 @@ fn a_patch_that_is_torn_closes_and_slides_by_coulombs_law() {
             }
         }
         go(&mut solid, [[-gap, -far], [gap, -far]], 50);
-        let open = fields::element_fields(&solid, 0).iter().map(|(s, _)| s.dot(*s).sqrt()).fold(0.0, f64::max);
+        let open = fields::element_fields(&solid, 0, None).iter().map(|(s, _)| s.dot(*s).sqrt()).fold(0.0, f64::max);
         assert!(open < 1e-6 * pressure, "{specimen:?}: {open} Pa across an open crack");
         // It sticks where it closes.
         go(&mut solid, [[gap, -far], [-gap, -far]], 50);
-        let closed = fields::element_fields(&solid, 0);
+        let closed = fields::element_fields(&solid, 0, None);
         assert!(closed.iter().all(|(s, _)| s.0[3].abs() < 1e-6 * pressure && s.0[1] <= -pressure * (1.0 - 1e-6)));
         assert!((solid.dissipated_energy() - damage).abs() < 1e-9 * damage, "{specimen:?}: damage grows once more");
     }

@@ -259,7 +259,7 @@ fn check_kirsch(quarter: &Quarter, before: &Scene, after: &Scene, what: &str) {
     for (found, expected) in found.iter().zip(expected) {
         assert!((found - expected).abs() < 0.02 * scale, "{what}: way of the wall {found:e}, {expected:e}");
     }
-    let stress = fields::element_fields(&after.solid, 0);
+    let stress = fields::element_fields(&after.solid, 0, None);
     let most = [0.0, PI].map(|twice: f64| {
         let [x, y] = quarter.stress;
         (x + y - 2.0 * (x - y) * twice.cos()).abs()
@@ -371,7 +371,8 @@ fn a_lining_comes_in_without_stress_and_bears_its_part_of_the_rest() {
         rest(&mut still, quarter.scene(3.0, 0.0, Some((comes.clone(), &[1]))), [1.0, 3.0]);
         let moved = difference(&still, &bare_for_good);
         assert!(moved < 1e-9, "{what}: {moved:e}");
-        let bears = fields::element_fields(&still.solid, 2).iter().map(|(s, _)| s.dot(*s)).fold(0.0, f64::max).sqrt();
+        let bears =
+            fields::element_fields(&still.solid, 2, None).iter().map(|(s, _)| s.dot(*s)).fold(0.0, f64::max).sqrt();
         assert!(bears < 1e-6 * pressure, "{what}: {bears}");
         rest(&mut scene, quarter.scene(3.0, 0.0, Some((comes, &[1]))), [0.5, 3.0]);
         let rock_way = quarter.radius * (1.0 + nu) / CONCRETE.young_modulus;

@@ -6,14 +6,37 @@ const LONGEST: usize = 64;
 /// Shortest name that counts as the beginning of another.
 const BEGINNING: usize = 3;
 
+/// What other programs and books call a thing, and its name here.
+const CALLED: [(&[&str], &str); 12] = [
+    (&["dt", "timestep", "delta_t", "fixed_step", "time_increment", "increment"], "step"),
+    (&["t_end", "end_time", "duration", "total_time", "stop_time", "tmax", "t_max"], "end"),
+    (&["cfl", "courant", "scale_factor", "safety_factor"], "safety"),
+    (&["e", "young", "youngs_modulus", "elastic_modulus", "modulus"], "young_modulus"),
+    (&["nu", "poisson", "poissons_ratio"], "poisson_ratio"),
+    (&["rho", "mass_density"], "density"),
+    (&["ft", "f_t", "sigma_c", "strength", "tension_strength", "yield_stress"], "tensile_strength"),
+    (&["fc", "f_c", "ucs", "compression_strength"], "compressive_strength"),
+    (&["gf", "g_f", "gc", "g_c"], "fracture_energy"),
+    (&["mu", "friction_coefficient"], "friction"),
+    (&["cor", "e_n", "coefficient_of_restitution"], "restitution"),
+    (&["fixed", "bc", "constraint"], "fix"),
+];
+
 /// The candidate that resembles `name` most, if one does: at most a third of its letters differ, upper and lower case
-/// aside, or else one of both begins the other. The first of several equals wins.
+/// aside, or else one of both begins the other. The first of several equals wins. What other programs call it comes before that.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if name.chars().count() > LONGEST {
         return None;
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let name = plain(name);
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    if !candidates.contains(&name.as_str())
+        && let Some((_, here)) = CALLED.iter().find(|(names, _)| names.contains(&name.as_str()))
+        && let Some(found) = candidates.iter().find(|candidate| *candidate == here)
+    {
+        return Some(found);
+    }
     let distance = |candidate: &str| strsim::osa_distance(&name, &plain(candidate));
     let allowed = |candidate: &str| (candidate.chars().count().max(name.chars().count()) / 3).max(1);
     let begins = |candidate: &str| {
@@ -45,6 +68,10 @@ mod tests {
         assert_eq!(nearest("viscosity", names), None);
         assert_eq!(nearest("fixed", ["name", "fix", "fix_rotation"]), Some("fix"));
         assert_eq!(nearest("poisson", names), Some("poisson_ratio"));
+        assert_eq!(nearest("E", names), Some("young_modulus"));
+        assert_eq!(nearest("rho", names), Some("density"));
+        assert_eq!(nearest("fixed_step", ["time_step", "step"]), Some("step"));
+        assert_eq!(nearest("dt", names), None);
         assert_eq!(nearest(&"x".repeat(1000), names), None);
     }
 }

@@ -39,11 +39,11 @@ impl Skin {
         for body in 0..solid.body_count() {
             let facets = neighbours::skin(solid, body);
             // Elements share edges: where most of them are seen, the values of all edges are found once.
-            let most = (6 * facets.len() > solid.alive(body).len()).then(|| fields::element_fields(solid, body));
+            let most = (6 * facets.len() > solid.alive(body).len()).then(|| fields::element_fields(solid, body, None));
             for (nodes, element) in facets {
                 let of_element = |all: &Vec<_>| all[element as usize];
                 let (stress, damage) =
-                    most.as_ref().map_or_else(|| fields::element_field(solid, body, element), of_element);
+                    most.as_ref().map_or_else(|| fields::element_field(solid, body, element, None), of_element);
                 skin.facets.push(nodes);
                 skin.damage.push(damage);
                 skin.stress.push(stress.principal_values()[0]);

@@ -167,7 +167,7 @@ pub fn gather_damage(scene: &mut Scene) {
 /// Brings what this rank has of the nodes and cells of others up to date, before anyone looks at all of them. All ranks must
 /// call it. Energies are up to date without it where a step has measured.
 pub fn gather_all(scene: &mut Scene) {
-    neighbours::gather_all(&mut scene.solid);
+    neighbours::gather_all(&mut scene.solid, scene.clock.dt_before);
     gather_particles(scene);
     gather_contacts(scene);
     gather_supports(scene);

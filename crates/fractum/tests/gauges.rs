@@ -115,3 +115,41 @@ fn probes_have_no_value_once_their_points_have_left_the_domain() {
         assert!(counts.iter().all(|&count| count > 10), "{body}: rows before and after it has left: {counts:?}");
     }
 }
+
+/// A bar without lateral contraction that is stretched everywhere at one rate.
+const UNIFORM: &str = r#"fractum = 1
+parameters = { rate = "RATE/1 s" }
+mesh = { file = "bar.msh" }
+supports = [{ group = "x-", velocity = { x = "rate*x" } }, { group = "x+", velocity = { x = "rate*x" } }]
+solver = { kind = "explicit", end = "2e-4/rate", safety = SAFETY }
+output = { history = { every = "1 ns" } }
+probes = [{ name = "stress", stress = { group = "body", component = "xx" } }, { name = "pull", reaction = { group = "x+", along = "x" } }]
+[materials.rock]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0
+damage = { tensile_strength = "3 MPa", fracture_energy = "1 kJ/m^2" }
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "rock"
+formulation = "FORMULATION"
+initial_velocity = { x = "rate*x" }
+"#;
+
+#[test]
+fn stress_never_passes_the_strength_however_fast_it_comes() {
+    for formulation in ["smoothed", "standard"] {
+        for (rate, safety) in [("1", 0.8), ("10", 0.8), ("10", 0.3)] {
+            let case = UNIFORM.replace("RATE", rate).replace("SAFETY", &safety.to_string());
+            let place = Workplace::new(&case.replace("FORMULATION", formulation));
+            let summary = run(&place, "out", "1");
+            let most = |probe: &str| summary["probes"][probe]["max"].as_f64().unwrap();
+            let (stress, pull) = (most("stress"), most("pull"));
+            assert!(stress <= 3e6 * (1.0 + 1e-9) && stress > 2.8e6, "{formulation} at {rate}/s: {stress} Pa");
+            let area = 0.0144;
+            assert!((pull / area / stress - 1.0).abs() < 1e-9, "{formulation} at {rate}/s: {pull} N and {stress} Pa");
+        }
+    }
+}

@@ -95,7 +95,7 @@ impl Cell {
     /// Stress across the crack [Pa].
     fn stress(&self) -> f64 {
         let normal = self.axes.column(0);
-        normal.dot(&(fields::element_fields(&self.solid, 0)[0].0.to_matrix() * normal))
+        normal.dot(&(fields::element_fields(&self.solid, 0, None)[0].0.to_matrix() * normal))
     }
 }
 

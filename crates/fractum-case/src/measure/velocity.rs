@@ -24,7 +24,7 @@ impl Measure for Velocity {
     const KEY: &'static str = "velocity";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].velocity", K::Table, "", "Mean velocity of those of a group's nodes or particles that have not left solver.domain, in m/s"),
+        key("probes[].velocity", K::Table, "", "Mean velocity of those of a group's nodes or particles that have not left solver.domain, in m/s; in motion it is of half a step after the time of the row"),
         key("probes[].velocity.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
         key("probes[].velocity.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
         key("probes[].velocity.along", K::DirectionOrAbout, "required", "Direction; or \"radial\" or \"tangential\": away from the axis, or around it by the right hand"),

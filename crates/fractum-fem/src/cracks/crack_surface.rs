@@ -3,6 +3,8 @@
 //! Nothing is kept for it: it follows from the mesh and from which elements are left, so that a solid that loses none pays
 //! nothing.
 
+use std::collections::BTreeMap;
+
 use fractum_math::{Ragged, Vec3};
 
 use crate::body::{ElementKind, facet_area};
@@ -24,8 +26,8 @@ pub struct CrackFacet {
     pub body: usize,
     /// Element behind it.
     pub element: u32,
-    /// Removed element that was before it.
-    pub removed: u32,
+    /// Removed element that was before it, with its body: another one where the body ends there.
+    pub removed: (usize, u32),
     /// Nodes, counter-clockwise as seen from the crack; a side of a triangle repeats its second node.
     pub nodes: [u32; 3],
     /// Present centre [m].
@@ -41,7 +43,7 @@ pub struct CrackFacet {
 /// All facets exposed by removal.
 #[derive(Clone, Debug, Default)]
 pub struct CrackSurface {
-    /// Body by body, in the order of the removed elements.
+    /// Body by body, in the order of the removed elements; then those at borders of bodies.
     pub facets: Vec<CrackFacet>,
     /// Facets that share an edge with each facet (an end, in the plane), ascending.
     pub neighbours: Ragged,
@@ -55,12 +57,13 @@ impl CrackSurface {
 
     /// The surface that the removal of elements has opened, at the present displacements.
     pub fn of(solid: &Solid) -> Self {
-        let mut facets = Vec::new();
+        let (mut facets, mut borders) = (Vec::new(), BTreeMap::new());
         for (body, model) in solid.bodies.iter().enumerate() {
             for removed in (0u32..).zip(&model.alive).filter(|(_, alive)| !**alive).map(|(element, _)| element) {
-                add_exposed(solid, body, removed, &mut facets);
+                add_exposed(solid, body, removed, &mut facets, &mut borders);
             }
         }
+        add_beyond_borders(solid, &mut borders, &mut facets);
         CrackSurface::new(facets)
     }
 
@@ -87,22 +90,68 @@ impl CrackSurface {
     }
 }
 
-/// Adds the facets that the removal of one element exposes.
-fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackFacet>) {
+/// Sides of removed elements on the outside of their body, by their nodes in ascending order: body, removed element, its nodes of the side
+/// and the opposite one.
+type Borders = BTreeMap<[u32; 3], (usize, u32, [u32; 3], u32)>;
+
+/// Adds the facets that the removal of one element exposes in its own body; its sides where the body ends go to `borders`.
+fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackFacet>, borders: &mut Borders) {
     let model = &solid.bodies[body];
     let Some(edges) = &model.edges else { return };
     let element = model.body.elements[removed as usize];
-    let sides = if model.body.shape == ElementKind::T4 { &SIDES_T4[..] } else { &SIDES_T3[..] };
-    for &(local, opposite, edge, third) in sides {
+    for &(local, opposite, edge, third) in sides(model) {
         let around = edges.around(edges.of_element(removed)[edge]);
-        if let Some(behind) = behind(model, &around, element[third]) {
-            let nodes = local.map(|k| element[k]);
-            facets.push(crack_facet(solid, body, behind, removed, nodes, element[opposite]));
+        let has = |e: u32| e != removed && model.body.elements[e as usize].contains(&element[third]);
+        let (nodes, opposite) = (local.map(|k| element[k]), element[opposite]);
+        match around.iter().copied().find(|&e| has(e)) {
+            Some(behind) if model.alive[behind as usize] => {
+                facets.push(crack_facet(solid, (body, behind), (body, removed), nodes, opposite));
+            }
+            Some(_) => {}
+            None => drop(borders.insert(sorted(nodes), (body, removed, nodes, opposite))),
         }
     }
 }
 
-fn crack_facet(solid: &Solid, body: usize, element: u32, removed: u32, nodes: [u32; 3], opposite: u32) -> CrackFacet {
+/// Adds the facets of other bodies that removed elements have left bare. A body that has wholly left takes no crack with it.
+fn add_beyond_borders(solid: &Solid, borders: &mut Borders, facets: &mut Vec<CrackFacet>) {
+    borders.retain(|_, (body, ..)| solid.bodies[*body].alive.contains(&true));
+    if borders.is_empty() || solid.bodies.len() == 1 {
+        return;
+    }
+    let mut is_bare = vec![false; solid.reference.len()];
+    borders.keys().flatten().for_each(|&node| is_bare[node as usize] = true);
+    for (body, model) in solid.bodies.iter().enumerate() {
+        for (behind, element) in (0..).zip(model.body.elements.iter()).filter(|&(e, _)| model.alive[e as usize]) {
+            for side in sides(model).iter().map(|(local, ..)| local.map(|k| element[k])) {
+                let bare = side.iter().all(|&node| is_bare[node as usize]);
+                let before = bare.then(|| borders.get(&sorted(side))).flatten();
+                if let Some(&(other, removed, nodes, opposite)) = before.filter(|(other, ..)| *other != body) {
+                    facets.push(crack_facet(solid, (body, behind), (other, removed), nodes, opposite));
+                }
+            }
+        }
+    }
+}
+
+fn sides(model: &BodyModel) -> &'static [([usize; 3], usize, usize, usize)] {
+    if model.body.shape == ElementKind::T4 { &SIDES_T4 } else { &SIDES_T3 }
+}
+
+/// Nodes of a side in an order that both elements give it.
+fn sorted([a, b, c]: [u32; 3]) -> [u32; 3] {
+    let mut nodes = [a, b, if b == c { a.max(b) } else { c }];
+    nodes.sort_unstable();
+    nodes
+}
+
+fn crack_facet(
+    solid: &Solid,
+    (body, element): (usize, u32),
+    removed: (usize, u32),
+    nodes: [u32; 3],
+    opposite: u32,
+) -> CrackFacet {
     let [a, b, c] = nodes.map(|node| solid.position(node as usize));
     let moved = nodes.map(|node| solid.displacement[node as usize]);
     let (area, centre, mean) = if nodes[1] == nodes[2] {
@@ -115,12 +164,6 @@ fn crack_facet(solid: &Solid, body: usize, element: u32, removed: u32, nodes: [u
     CrackFacet { body, element, removed, nodes, centre, area: area.norm(), normal, opening }
 }
 
-/// The element with the node `third` among those around an edge that are still there.
-fn behind(model: &BodyModel, around: &[u32], third: u32) -> Option<u32> {
-    let has = |&&e: &&u32| model.alive[e as usize] && model.body.elements[e as usize].contains(&third);
-    around.iter().find(has).copied()
-}
-
 #[cfg(test)]
 mod tests {
     use fractum_kernels::material::{DamageLaw, Elastic};
@@ -129,12 +172,18 @@ mod tests {
     use crate::body::Body;
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
-    fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>) -> Solid {
+    /// A bar, elastic and a body of its own up to x = `border`.
+    fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>, border: f64) -> Solid {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
         let law = DamageLaw::rankine(3e6, 100.0);
-        let mut body = Body::new("bar", shape, elements, elastic).smoothed().with_damage(law);
-        body.thickness = 0.3;
-        let mut solid = Solid::new(nodes, vec![body]).unwrap();
+        let is_rest = |element: &[u32; 4]| element.iter().all(|&n| nodes[n as usize].x < border + 1e-9);
+        let (rest, elements): (Vec<_>, Vec<_>) = elements.into_iter().partition(is_rest);
+        let mut bodies = vec![Body::new("bar", shape, elements, elastic).smoothed().with_damage(law)];
+        if !rest.is_empty() {
+            bodies.push(Body::new("rest", shape, rest, elastic));
+        }
+        bodies.iter_mut().for_each(|body| body.thickness = 0.3);
+        let mut solid = Solid::new(nodes, bodies).unwrap();
         assert!(CrackSurface::of(&solid).facets.is_empty());
         // The column of elements between x = 2 and 3 opens by 5 mm.
         for (u, p) in solid.displacement.iter_mut().zip(&solid.reference) {
@@ -148,25 +197,33 @@ mod tests {
     #[test]
     fn a_bar_torn_in_two_shows_both_faces_of_its_cross_section() {
         let flat = structured_rectangle([5, 3], [0.5, 0.2], None);
-        let elements = flat.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let elements: Vec<_> = flat.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
         let deep = structured_box([5, 3, 2], Vec3::new(0.5, 0.2, 0.3), None);
-        let solids =
-            [broken(ElementKind::T3, flat.nodes, elements), broken(ElementKind::T4, deep.nodes, deep.tetrahedra)];
-        for solid in &solids {
-            let crack = CrackSurface::of(solid);
-            let section = 0.2 * 0.3;
-            assert!((crack.area() / (2.0 * section) - 1.0).abs() < 1e-12, "{}", crack.area());
-            for (index, facet) in crack.facets.iter().enumerate() {
-                assert!((facet.opening - 5e-3).abs() < 1e-12 && facet.normal.x.abs() > 1.0 - 1e-12, "{facet:?}");
-                assert!(solid.alive(0)[facet.element as usize] && !solid.alive(0)[facet.removed as usize]);
-                let side = if facet.centre.x < 0.25 { 1.0 } else { -1.0 };
-                assert_eq!(facet.normal.x.signum(), side);
-                for &other in crack.neighbours.row(index) {
-                    assert_eq!(crack.facets[other as usize].normal.x.signum(), side);
-                    assert!(crack.neighbours.row(other as usize).contains(&(index as u32)));
-                }
-                assert!(!crack.neighbours.row(index).is_empty());
+        for border in [0.0, 0.2] {
+            let solids = [
+                broken(ElementKind::T3, flat.nodes.clone(), elements.clone(), border),
+                broken(ElementKind::T4, deep.nodes.clone(), deep.tetrahedra.clone(), border),
+            ];
+            for solid in &solids {
+                shows_both_faces(solid);
             }
+        }
+    }
+
+    fn shows_both_faces(solid: &Solid) {
+        let crack = CrackSurface::of(solid);
+        let section = 0.2 * 0.3;
+        assert!((crack.area() / (2.0 * section) - 1.0).abs() < 1e-12, "{}", crack.area());
+        for (index, facet) in crack.facets.iter().enumerate() {
+            assert!((facet.opening - 5e-3).abs() < 1e-12 && facet.normal.x.abs() > 1.0 - 1e-12, "{facet:?}");
+            assert!(solid.alive(facet.body)[facet.element as usize] && !solid.alive(0)[facet.removed.1 as usize]);
+            let side = if facet.centre.x < 0.25 { 1.0 } else { -1.0 };
+            assert_eq!(facet.normal.x.signum(), side);
+            for &other in crack.neighbours.row(index) {
+                assert_eq!(crack.facets[other as usize].normal.x.signum(), side);
+                assert!(crack.neighbours.row(other as usize).contains(&(index as u32)));
+            }
+            assert!(!crack.neighbours.row(index).is_empty());
         }
     }
 }

@@ -31,7 +31,7 @@ pub struct SeparatedElement {
 /// A facet that faces a crack.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SeparatedFacet {
-    /// Body it belongs to.
+    /// Body of the removed element before it.
     pub body: usize,
     /// Removed element before it.
     pub removed: u32,
@@ -83,8 +83,8 @@ fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet
     };
     let areas = vectors.iter().zip(&mean).map(projected);
     let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
-        body: facet.body,
-        removed: facet.removed,
+        body: facet.removed.0,
+        removed: facet.removed.1,
         area: 0.5 * area,
     };
     surface.facets.iter().zip(areas).map(facet).collect()

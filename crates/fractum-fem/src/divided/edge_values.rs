@@ -10,7 +10,7 @@ use super::{BodyShare, EdgeValue};
 use crate::body::edges::BodyEdges;
 
 /// Numbers of an [`EdgeValue`].
-const NUMBERS: usize = 13;
+const NUMBERS: usize = 19;
 
 /// Values of edges that this rank gets of others, and of those that it sends.
 #[derive(Clone, Debug, Default)]
@@ -70,15 +70,17 @@ impl EdgeValues {
     pub(crate) fn swap(&mut self, exchange: &dyn Exchange, value: impl Fn(u32) -> EdgeValue) {
         let Some(swapped) = &mut self.swapped else { return };
         let get = |_: &Vec<EdgeValue>, edge: u32| {
-            let EdgeValue { stress, damage, strain } = value(edge);
+            let EdgeValue { stress, earlier_stress, damage, strain } = value(edge);
             let mut numbers = [damage; NUMBERS];
             numbers[..6].copy_from_slice(&stress.0);
             numbers[6..12].copy_from_slice(&strain.0);
+            numbers[12..18].copy_from_slice(&earlier_stress.0);
             numbers
         };
         let put = |values: &mut Vec<EdgeValue>, place: u32, numbers: [f64; NUMBERS]| {
-            let [stress, strain] = [0, 6].map(|first| Sym3(std::array::from_fn(|k| numbers[first + k])));
-            values[place as usize] = EdgeValue { stress, damage: numbers[12], strain };
+            let [stress, strain, earlier_stress] =
+                [0, 6, 12].map(|first| Sym3(std::array::from_fn(|k| numbers[first + k])));
+            values[place as usize] = EdgeValue { stress, earlier_stress, damage: numbers[18], strain };
         };
         swapped.exchange(exchange, &mut self.values, get, put);
     }

@@ -163,6 +163,8 @@ pub(crate) type NodesOfOthers = BTreeMap<usize, Vec<u32>>;
 pub(crate) struct EdgeValue {
     /// Stress [Pa].
     pub(crate) stress: Sym3,
+    /// That at the instant of the last step [Pa].
+    pub(crate) earlier_stress: Sym3,
     pub(crate) damage: f64,
     /// Strain, that of thermal expansion included.
     pub(crate) strain: Sym3,

@@ -17,9 +17,12 @@ use crate::solid::body_model::BodyModel;
 use crate::solid::evaluate::Block;
 
 /// Nominal stress [Pa] and damage of every element of a body: means over its edges where it is smoothed.
-pub fn element_fields(solid: &Solid, index: usize) -> Vec<(Sym3, f64)> {
+///
+/// - `earlier`: displacements of the nodes at the instant of the last step [m], to which the damage belongs; without them the stress is that
+///   of the present ones
+pub fn element_fields(solid: &Solid, index: usize, earlier: Option<&[Vec3]>) -> Vec<(Sym3, f64)> {
     let model = &solid.bodies[index];
-    means(model, |at| cell_field(solid, index, at))
+    means(model, |at| cell_field(solid, index, at, earlier))
 }
 
 /// What cells hold, as means over the edges of each element where the body is smoothed.
@@ -41,9 +44,9 @@ pub fn owned_elements(solid: &Solid, index: usize) -> Vec<u32> {
     alive.filter(|&element: &u32| solid.owns(index, element)).collect()
 }
 
-/// As [`element_fields`], of [`owned_elements`].
+/// As [`element_fields`], of [`owned_elements`] at the present displacements.
 pub fn owned_fields(solid: &Solid, index: usize) -> Vec<(Sym3, f64)> {
-    owned_means(solid, index, |at| cell_field(solid, index, at))
+    owned_means(solid, index, |at| cell_field(solid, index, at, None))
 }
 
 /// Strain of [`owned_elements`], that of thermal expansion included: the mean over its edges where the body is smoothed.
@@ -77,9 +80,9 @@ fn owned_means(
 }
 
 /// As [`element_fields`] of one element.
-pub fn element_field(solid: &Solid, index: usize, element: u32) -> (Sym3, f64) {
+pub fn element_field(solid: &Solid, index: usize, element: u32, earlier: Option<&[Vec3]>) -> (Sym3, f64) {
     let model = &solid.bodies[index];
-    let cell = |cell: u32| cell_field(solid, index, model.location.of(cell));
+    let cell = |cell: u32| cell_field(solid, index, model.location.of(cell), earlier);
     match model.smoothed_edges() {
         None => cell(element),
         Some(edges) => model.mean_of_edges(&edges.of_element(element), cell),
@@ -107,15 +110,17 @@ pub(crate) fn damages_around(solid: &Solid, index: usize) -> Vec<f64> {
     damages
 }
 
-pub(crate) fn cell_field(solid: &Solid, index: usize, at: (u32, u32)) -> (Sym3, f64) {
+/// Nominal stress [Pa] and damage of a cell; see [`element_fields`].
+pub(crate) fn cell_field(solid: &Solid, index: usize, at: (u32, u32), earlier: Option<&[Vec3]>) -> (Sym3, f64) {
     let model = &solid.bodies[index];
+    let displacement = earlier.unwrap_or(&solid.displacement);
     match at.0 {
         ELSEWHERE => {
-            let EdgeValue { stress, damage, .. } = solid.neighbours.received_value(index, at.1);
-            return (stress, damage);
+            let EdgeValue { stress, earlier_stress, damage, .. } = solid.neighbours.received_value(index, at.1);
+            return (if earlier.is_some() { earlier_stress } else { stress }, damage);
         }
         ALONE => {
-            let strain = strain_alone(solid, model, at.1);
+            let strain = strain_alone(solid, model, at.1, displacement);
             let received =
                 solid.edge(index, at.1).map(|(field, place)| field.nominal_stress(place, &model.elasticity, strain));
             return received.unwrap_or_else(|| (model.elasticity.stress(strain), 0.0));
@@ -123,7 +128,7 @@ pub(crate) fn cell_field(solid: &Solid, index: usize, at: (u32, u32)) -> (Sym3, 
         _ => {}
     }
     let (cells, place) = cells_with(solid, at);
-    let strain = kernel::elastic_strain(&cells, place, &solid.displacement, model.body.kinematics);
+    let strain = kernel::elastic_strain(&cells, place, displacement, model.body.kinematics);
     let (block, cell) = (&solid.blocks[at.0 as usize], at.1 as usize);
     (block.nominal_stress(cell, &model.elasticity, strain), block.damage_of(cell))
 }
@@ -133,7 +138,7 @@ pub(crate) fn cell_strain(solid: &Solid, index: usize, at: (u32, u32)) -> Sym3 {
     let model = &solid.bodies[index];
     match at.0 {
         ELSEWHERE => return solid.neighbours.received_value(index, at.1).strain,
-        ALONE => return strain_alone(solid, model, at.1),
+        ALONE => return strain_alone(solid, model, at.1, &solid.displacement),
         _ => {}
     }
     let (cells, cell) = cells_with(solid, at);
@@ -141,9 +146,9 @@ pub(crate) fn cell_strain(solid: &Solid, index: usize, at: (u32, u32)) -> Sym3 {
 }
 
 /// Strain of a cell of which this process has no more than the elements around it.
-fn strain_alone(solid: &Solid, model: &BodyModel, cell: u32) -> Sym3 {
+fn strain_alone(solid: &Solid, model: &BodyModel, cell: u32, displacement: &[Vec3]) -> Sym3 {
     let cells = model.cells(&solid.reference, &[cell]);
-    kernel::total_strain(&cells, 0, &solid.displacement, model.body.kinematics)
+    kernel::total_strain(&cells, 0, displacement, model.body.kinematics)
 }
 
 /// The geometry of a cell (block, number), with its number there: by itself where this process does not keep its block.

@@ -181,7 +181,7 @@ mod tests {
             // Held in all directions: σ = -E α ΔT/(1 - 2 ν), energy 3/2 V E (α ΔT)²/(1 - 2 ν).
             solid.update_internal_forces(0.0, true);
             let pressure = -30e9 * ALPHA * 100.0 / 0.6;
-            let (stress, _) = crate::fields::element_fields::element_field(&solid, 0, 7);
+            let (stress, _) = crate::fields::element_fields::element_field(&solid, 0, 7, None);
             assert!((stress.0[0] / pressure - 1.0).abs() < 1e-12 && stress.0[3].abs() < 1.0, "{stress:?}");
             let energy = -1.5 * pressure * ALPHA * 100.0;
             assert!((solid.elastic_energy() / energy - 1.0).abs() < 1e-12);

@@ -50,25 +50,34 @@ pub fn gather_damage(solid: &mut Solid) {
 }
 
 /// Brings what this rank has of the nodes and cells of others up to date.
-pub fn gather_all(solid: &mut Solid) {
+///
+/// - `dt`: time since the instant of the last step [s]
+pub fn gather_all(solid: &mut Solid, dt: f64) {
     gather_nodes(solid);
     if let Some(own) = subdomain_mut(&mut solid.neighbours) {
         own.gather_cells(&mut solid.blocks, true);
     }
-    gather_edge_values(solid);
+    gather_edge_values(solid, dt);
 }
 
 /// Brings stress, damage and strain of edges up to date that this rank needs of others for the means over the edges of its elements; of no effect where each
 /// has all elements.
-pub fn gather_edge_values(solid: &mut Solid) {
+///
+/// - `dt`: time since the instant of the last step [s]
+fn gather_edge_values(solid: &mut Solid, dt: f64) {
+    if subdomain(solid).is_none() {
+        return;
+    }
+    let earlier = solid.displacements_before(dt);
     for body in 0..solid.bodies.len() {
         let Some(own) = subdomain_mut(&mut solid.neighbours) else { return };
         let exchange = Arc::clone(&own.exchange);
         let Some(mut divided) = own.bodies.get_mut(body).and_then(|body| body.divided.take()) else { continue };
         divided.values.swap(&*exchange, |edge| {
             let at = solid.bodies[body].location.of(edge);
-            let (stress, damage) = cell_field(solid, body, at);
-            EdgeValue { stress, damage, strain: cell_strain(solid, body, at) }
+            let (stress, damage) = cell_field(solid, body, at, None);
+            let (earlier_stress, _) = cell_field(solid, body, at, Some(&earlier));
+            EdgeValue { stress, earlier_stress, damage, strain: cell_strain(solid, body, at) }
         });
         if let Some(own) = subdomain_mut(&mut solid.neighbours) {
             own.bodies[body].divided = Some(divided);

@@ -21,9 +21,7 @@ mod whole_body;
 
 use std::any::Any;
 
-pub use exchanges::{
-    exchange_sums, follow_nodes, gather_all, gather_damage, gather_edge_values, gather_nodes, move_all_nodes_next,
-};
+pub use exchanges::{exchange_sums, follow_nodes, gather_all, gather_damage, gather_nodes, move_all_nodes_next};
 pub use moved_nodes::{MovedNodes, exchange_node_values, moved_among};
 pub use set_up::{distribute, divided_solid, shared_solid};
 pub use state_part::{SolidPart, each_history, each_viscous_block, joined, state_beside_parts, state_part};

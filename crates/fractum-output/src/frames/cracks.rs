@@ -167,7 +167,7 @@ pub fn facets_table(solid: &Solid, crack: &CrackSurface, history: &FacetHistory)
             "{},{},{},{time:e},{:e},{:e},{:e},{:.6},{:.6},{:.6},{:e},{:e},{fragment}",
             quoted(body),
             facet.element,
-            facet.removed,
+            facet.removed.1,
             x.x,
             x.y,
             x.z,

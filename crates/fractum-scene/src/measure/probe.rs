@@ -4,7 +4,7 @@ use std::cell::OnceCell;
 use std::fmt;
 
 use fractum_fem::{CrackEdge, Fracture, Separation, cracks, fields};
-use fractum_math::Sym3;
+use fractum_math::{Sym3, Vec3};
 
 use crate::contacts::ContactProbe;
 use crate::fragment::Fragment;
@@ -85,6 +85,8 @@ pub struct ProbedScene<'a> {
     crack_edges: OnceCell<Vec<CrackEdge>>,
     counts: Counts,
     fracture: OnceCell<Fracture>,
+    /// Displacement of the nodes at the instant of the last step, to which damage and reactions belong [m].
+    earlier: OnceCell<Vec<Vec3>>,
     /// Stress of all elements, body by body.
     stresses: Vec<OnceCell<Vec<Sym3>>>,
 }
@@ -104,6 +106,7 @@ impl<'a> ProbedScene<'a> {
             crack_edges: OnceCell::new(),
             counts,
             fracture: OnceCell::new(),
+            earlier: OnceCell::new(),
             stresses: vec![OnceCell::new(); scene.solid.body_count()],
         }
     }
@@ -118,13 +121,14 @@ impl<'a> ProbedScene<'a> {
         self.fracture.get_or_init(|| cracks::fracture(&self.scene.solid))
     }
 
-    /// Stress of an element [Pa]; of all elements of its body at once where a probe has many of them.
+    /// Stress of an element at the instant of the last step [Pa]; of all elements of its body at once where a probe has many of them.
     pub fn stress(&self, body: usize, element: u32, has_many: bool) -> Sym3 {
         let solid = &self.scene.solid;
+        let earlier = self.earlier.get_or_init(|| solid.displacements_before(self.scene.clock.dt_before));
         if !has_many {
-            return fields::element_field(solid, body, element).0;
+            return fields::element_field(solid, body, element, Some(earlier)).0;
         }
-        let all = || fields::element_fields(solid, body).into_iter().map(|(stress, _)| stress).collect();
+        let all = || fields::element_fields(solid, body, Some(earlier)).into_iter().map(|(stress, _)| stress).collect();
         self.stresses[body].get_or_init(all)[element as usize]
     }
 

@@ -24,7 +24,11 @@ impl Plan {
             format!(
                 "{} ({} the stable {}), governed by {governing}{shorter}",
                 quantity(scene.clock.dt_after, "s"),
-                if case.solver.step.is_some() { "fixed, below".to_owned() } else { format!("{} of", case.solver.safety) },
+                if case.solver.step.is_some() {
+                    "fixed, below".to_owned()
+                } else {
+                    format!("{} of", case.solver.safety)
+                },
                 quantity(scene.stable_dt(), "s")
             ),
         );

@@ -215,7 +215,10 @@ fn add_cracks(scene: &Scene, folder: &Path, removed: &[(u32, u32, f64)], files: 
     let times: BTreeMap<(u32, u32), f64> =
         removed.iter().map(|&(body, element, time)| ((body, element), time)).collect();
     let nodes = scene.fragment_of_nodes();
-    let of = |facet: &CrackFacet| times.get(&(facet.body as u32, facet.removed)).copied().unwrap_or(scene.clock.time);
+    let of = |facet: &CrackFacet| {
+        let (body, element) = facet.removed;
+        times.get(&(body as u32, element)).copied().unwrap_or(scene.clock.time)
+    };
     let history = FacetHistory {
         time: crack.facets.iter().map(of).collect(),
         fragment: crack.facets.iter().map(|facet| nodes[facet.nodes[0] as usize]).collect(),
