@@ -7,7 +7,7 @@ const LONGEST: usize = 64;
 const BEGINNING: usize = 3;
 
 /// What other programs and books call a thing, and its name here.
-const CALLED: [(&[&str], &str); 12] = [
+const CALLED: [(&[&str], &str); 15] = [
     (&["dt", "timestep", "delta_t", "fixed_step", "time_increment", "increment"], "step"),
     (&["t_end", "end_time", "duration", "total_time", "stop_time", "tmax", "t_max"], "end"),
     (&["cfl", "courant", "scale_factor", "safety_factor"], "safety"),
@@ -19,6 +19,9 @@ const CALLED: [(&[&str], &str); 12] = [
     (&["gf", "g_f", "gc", "g_c"], "fracture_energy"),
     (&["mu", "friction_coefficient"], "friction"),
     (&["cor", "e_n", "coefficient_of_restitution"], "restitution"),
+    (&["cp", "c_p", "specific_heat"], "heat_capacity"),
+    (&["cte", "alpha", "thermal_expansion"], "expansion"),
+    (&["k", "lambda", "thermal_conductivity"], "conductivity"),
     (&["fixed", "bc", "constraint"], "fix"),
 ];
 
