@@ -138,8 +138,8 @@ pub fn draw(scene: &Scene, skin: Skin, folder: &Path, instant: &str, files: &mut
     let size = extent(solid.reference.iter().chain(bonded.reference()));
     let attached = scene.attached_nodes();
     let of_nodes = (0..attached.len()).filter(|&n| attached[n]).map(|n| solid.displacement_from_start(n).norm());
-    let moved: Vec<Vec3> =
-        bonded.particles.position.iter().zip(bonded.reference()).map(|(x, start)| x - start).collect();
+    let places = bonded.particles.position.iter().map(|x| x + scene.into_box(x)[0]);
+    let moved: Vec<Vec3> = places.zip(bonded.reference()).map(|(x, start)| x - start).collect();
     let largest = of_nodes.chain(moved.iter().map(|u| u.norm())).fold(0.0, f64::max);
     let Skin { facets, damage, stress } = &skin;
     let strain = |facet: &[u32; 3]| {

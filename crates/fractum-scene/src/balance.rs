@@ -7,6 +7,7 @@ use crate::clock::ThisStep;
 use crate::error::StepError;
 use crate::interfaces::Interfaces;
 use crate::ledger::{Books, EnergyKind, Ledger};
+use crate::periodic::box_energies;
 use crate::ranks::gather_all;
 use crate::scene::{Optional, Scene};
 use crate::watch::{Notice, Site};
@@ -75,6 +76,9 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
     ledger[EnergyKind::Left] = books.left;
     ledger[EnergyKind::Entered] = books.entered;
+    let [of_box, streaming] = box_energies(optional.periodic.as_deref());
+    ledger[EnergyKind::PeriodicBox] = of_box;
+    ledger[EnergyKind::Kinetic] -= streaming;
     book_interfaces(ledger, books, &optional.interfaces);
     ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
     if scene.clock.step == 0 {

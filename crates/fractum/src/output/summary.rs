@@ -122,6 +122,9 @@ pub(crate) fn state_hash(scene: &Scene) -> u128 {
     if let Some(subcycling) = scene.subcycling_state() {
         bytes.extend(postcard::to_stdvec(&subcycling).unwrap_or_default());
     }
+    if let Some(periodic) = scene.periodic_state() {
+        bytes.extend(postcard::to_stdvec(&periodic).unwrap_or_default());
+    }
     xxhash_rust::xxh3::xxh3_128(&bytes)
 }
 

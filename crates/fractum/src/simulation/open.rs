@@ -296,6 +296,7 @@ fn put_back(
     scene.restore(whole.ok_or_else(damaged)?);
     scene.restore_heat(state.heat);
     scene.restore_subcycling(state.subcycling);
+    scene.restore_periodic(state.periodic);
     solver.restore(scene, state.solver);
     let mut record = state.record.into_owned();
     if is_other {
