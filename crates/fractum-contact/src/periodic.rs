@@ -168,7 +168,8 @@ impl Images {
         let mut ghosts = Vec::new();
         for (place, owner) in spheres.position.iter().zip(0u32..) {
             let parts = upright.parts(place);
-            let inside = Vec3::from_fn(|k, _| if self.cell.repeats[k] { parts[k] - parts[k].floor() } else { parts[k] });
+            let inside =
+                Vec3::from_fn(|k, _| if self.cell.repeats[k] { parts[k] - parts[k].floor() } else { parts[k] });
             centres.push(self.cell.corner + upright.edges * inside);
             if spheres.radius[owner as usize] < 0.0 {
                 continue;
@@ -208,8 +209,7 @@ impl Images {
         let upright = self.cell.upright_cell(&own);
         let image = |[i, j]: [u32; 2]| {
             let parts = solved(&upright.edges, &(position[j as usize] - position[i as usize]));
-            let away: Image =
-                std::array::from_fn(|k| if self.cell.repeats[k] { -parts[k].round() as i32 } else { 0 });
+            let away: Image = std::array::from_fn(|k| if self.cell.repeats[k] { -parts[k].round() as i32 } else { 0 });
             in_edges(&own, &away)
         };
         self.of_pairs = pairs.map(image).collect();

@@ -76,7 +76,7 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
     ledger[EnergyKind::Left] = books.left;
     ledger[EnergyKind::Entered] = books.entered;
-    let [of_box, streaming] = box_energies(optional.periodic.as_deref());
+    let [of_box, streaming, flow] = box_energies(optional.periodic.as_deref());
     ledger[EnergyKind::PeriodicBox] = of_box;
     ledger[EnergyKind::Kinetic] -= streaming;
     book_interfaces(ledger, books, &optional.interfaces);
@@ -100,6 +100,8 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
         // What the gas has done is in play; what it holds may be much more, and its rounding is no energy.
         ledger.scale = ledger.scale.max((supplied - held - leaked).abs()).max(GAS_ROUND_OFF * held);
     }
+    // Particles that meet in a box that deforms take from its mean flow.
+    ledger.scale = ledger.scale.max(flow);
     // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
     // work done so far.
     ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));

@@ -57,6 +57,8 @@ pub struct PeriodicState {
     work: [f64; 2],
     /// Kinetic energy that the mean flow adds to that of the particles as they stand, when last measured [J].
     streaming: f64,
+    /// Kinetic energy of the mean flow in the box, when last measured [J].
+    flow: f64,
     /// Stress when last measured, tension positive [Pa].
     stress: Mat3,
     /// The part of it that motion against the mean flow has [Pa].
@@ -96,6 +98,7 @@ pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain
         start: cell.edges,
         work: [0.0; 2],
         streaming: 0.0,
+        flow: 0.0,
         stress: Mat3::zeros(),
         kinetic_stress: Mat3::zeros(),
     };
@@ -143,9 +146,7 @@ impl Scene {
                 2.0 * self.contacts.touching_among() as f64 / self.bonded.particles.len() as f64
             }
             BoxMeasure::Volume => cell.volume(),
-            BoxMeasure::Strain([i, j]) => {
-                cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 }
-            }
+            BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
         }
     }
 }
@@ -214,9 +215,11 @@ pub(crate) fn book_box(scene: &mut Scene) {
     }
 }
 
-/// Work of the box, and the kinetic energy of the mean flow that the particles as they stand have beyond that against it [J].
-pub(crate) fn box_energies(own: Option<&PeriodicBox>) -> [f64; 2] {
-    own.map_or([0.0; 2], |own| [own.state.work[0] - own.state.streaming, own.state.streaming])
+/// Work of the box; the kinetic energy that the particles as they stand have beyond that against the mean flow; and that of the mean flow in
+/// the box, ∫ ½ ρ |L x|² dV about its middle [J].
+pub(crate) fn box_energies(own: Option<&PeriodicBox>) -> [f64; 3] {
+    let of = |PeriodicState { work, streaming, flow, .. }: &PeriodicState| [work[0] - streaming, *streaming, *flow];
+    own.map_or([0.0; 3], |own| of(&own.state))
 }
 
 impl std::fmt::Debug for PeriodicBox {
@@ -257,6 +260,7 @@ impl PeriodicBox {
         }
         if measure {
             state.streaming = streaming(particles, &mean, &state.cell.velocity_gradient(), dt_before);
+            state.flow = mean.mass / 24.0 * state.cell.velocity.norm_squared();
             if is_first {
                 state.work[0] = state.streaming;
             }

@@ -74,7 +74,11 @@ fn refused<'c>(case: &'c Case, periodic: &'c Periodic) -> Vec<(&'c Place, String
                 let turns = rigid.free_rotation || rigid.spin.iter().any(Option::is_some);
                 let is_plane = matches!(&rigid.shape, RigidShape::Plane { normal, .. } if across(normal));
                 if !is_plane || turns {
-                    refuse(place, format!("= \"{name}\": this rigid body would cross sides of the periodic box"), LOOSE);
+                    refuse(
+                        place,
+                        format!("= \"{name}\": this rigid body would cross sides of the periodic box"),
+                        LOOSE,
+                    );
                 }
             }
         }

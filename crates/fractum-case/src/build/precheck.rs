@@ -255,7 +255,12 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
 }
 
-pub(super) fn check_function<T>(context: &mut Context<'_>, function: &TimeFunction, written: &Spanned<T>, on: Option<&Selection>) {
+pub(super) fn check_function<T>(
+    context: &mut Context<'_>,
+    function: &TimeFunction,
+    written: &Spanned<T>,
+    on: Option<&Selection>,
+) {
     let mut positions: Vec<Vec3> = Vec::new();
     if let Some(on) = on.filter(|_| function.depends_on_position()) {
         let all = || (0..context.mesh.nodes.len() as u32).collect();

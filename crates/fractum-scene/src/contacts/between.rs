@@ -1,7 +1,7 @@
 //! Force of contact between two named bodies, summed up for the probes that ask for it.
 
-use fractum_contact::{Spheres, Touch};
 use fractum_contact::law::{ContactLaw, Hertz, HertzMemory};
+use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;

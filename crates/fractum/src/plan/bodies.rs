@@ -3,8 +3,8 @@
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
 use fractum_case::model::{
-    BodyKind, Case, LooseSource, Material, Periodic, Rate, RigidBody, RigidShape, ServoForce, Sizes, SolidBody, SolverKind,
-    Stream,
+    BodyKind, Case, LooseSource, Material, Periodic, Rate, RigidBody, RigidShape, ServoForce, Sizes, SolidBody,
+    SolverKind, Stream,
 };
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
