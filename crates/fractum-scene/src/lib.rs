@@ -86,7 +86,10 @@ pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};
 pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use modes::{Mode, Modes};
-pub use periodic::{BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, periodic_cell, with_periodic_box};
+pub use periodic::{
+    BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, into_periodic_box, measure_periodic_box,
+    periodic_cell, periodic_cell_of, periodic_state, restore_periodic, with_periodic_box,
+};
 pub use pumped::{liquid_of, with_liquid};
 pub use ranks::Watched;
 pub use saved::SceneState;

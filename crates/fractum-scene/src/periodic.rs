@@ -106,48 +106,44 @@ pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain
     scene
 }
 
-impl Scene {
-    /// The box that repeats, as it is now; none where nothing does.
-    pub fn periodic_cell(&self) -> Option<&PeriodicCell> {
-        self.optional.periodic.as_ref().map(|own| &own.state.cell)
-    }
+/// The box of a scene that repeats, as it is now; none where nothing does.
+pub fn periodic_cell_of(scene: &Scene) -> Option<&PeriodicCell> {
+    scene.optional.periodic.as_ref().map(|own| &own.state.cell)
+}
 
-    /// Where a particle is within the box that repeats: what its image there has beyond its own place and velocity [m, m/s].
-    pub fn into_box(&self, place: &Vec3) -> [Vec3; 2] {
-        self.periodic_cell().map_or([Vec3::zeros(); 2], |cell| cell.into_box(place))
-    }
+/// Where a particle is within the box that repeats: what its image there has beyond its own place and velocity [m, m/s].
+pub fn into_periodic_box(scene: &Scene, place: &Vec3) -> [Vec3; 2] {
+    periodic_cell_of(scene).map_or([Vec3::zeros(); 2], |cell| cell.into_box(place))
+}
 
-    /// What changes in the box that repeats, for a checkpoint.
-    pub fn periodic_state(&self) -> Option<PeriodicState> {
-        self.optional.periodic.as_ref().map(|own| own.state.clone())
-    }
+/// What changes in the box that repeats, for a checkpoint.
+pub fn periodic_state(scene: &Scene) -> Option<PeriodicState> {
+    scene.optional.periodic.as_ref().map(|own| own.state.clone())
+}
 
-    /// Puts it back, after the state of the scene.
-    pub fn restore_periodic(&mut self, state: Option<PeriodicState>) {
-        if let (Some(own), Some(state)) = (&mut self.optional.periodic, state) {
-            self.contacts.set_cell(&state.cell);
-            own.state = state;
+/// Puts it back, after the state of the scene.
+pub fn restore_periodic(scene: &mut Scene, state: Option<PeriodicState>) {
+    if let (Some(own), Some(state)) = (&mut scene.optional.periodic, state) {
+        scene.contacts.set_cell(&state.cell);
+        own.state = state;
+    }
+}
+
+/// What a probe shows of the box that repeats, when last measured; not a number without one.
+pub fn measure_periodic_box(scene: &Scene, measure: BoxMeasure) -> f64 {
+    let Some(own) = &scene.optional.periodic else { return f64::NAN };
+    let PeriodicState { cell, start, stress, kinetic_stress, .. } = &own.state;
+    match measure {
+        BoxMeasure::Stress([i, j]) => 0.5 * (stress[(i, j)] + stress[(j, i)]),
+        BoxMeasure::KineticStress([i, j]) => kinetic_stress[(i, j)],
+        BoxMeasure::Pressure => -stress.trace() / 3.0,
+        BoxMeasure::SolidFraction => {
+            let radii = scene.bonded.particles.radius.iter();
+            radii.map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
         }
-    }
-
-    /// What a probe shows of the box that repeats, when last measured; not a number without one.
-    pub fn box_measure(&self, measure: BoxMeasure) -> f64 {
-        let Some(own) = &self.optional.periodic else { return f64::NAN };
-        let PeriodicState { cell, start, stress, kinetic_stress, .. } = &own.state;
-        match measure {
-            BoxMeasure::Stress([i, j]) => 0.5 * (stress[(i, j)] + stress[(j, i)]),
-            BoxMeasure::KineticStress([i, j]) => kinetic_stress[(i, j)],
-            BoxMeasure::Pressure => -stress.trace() / 3.0,
-            BoxMeasure::SolidFraction => {
-                let radii = self.bonded.particles.radius.iter();
-                radii.map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
-            }
-            BoxMeasure::Coordination => {
-                2.0 * self.contacts.touching_among() as f64 / self.bonded.particles.len() as f64
-            }
-            BoxMeasure::Volume => cell.volume(),
-            BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
-        }
+        BoxMeasure::Coordination => 2.0 * scene.contacts.touching_among() as f64 / scene.bonded.particles.len() as f64,
+        BoxMeasure::Volume => cell.volume(),
+        BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
     }
 }
 

@@ -28,7 +28,9 @@ use fractum_output::origin::Origin;
 use fractum_output::summary::Summary;
 use fractum_output::warning::Warning;
 use fractum_prepare::Cache;
-use fractum_scene::{EnergyKind, HeatState, PeriodicState, Scene, SceneState, StepError, SubcyclingState, ranks};
+use fractum_scene::{
+    EnergyKind, HeatState, PeriodicState, Scene, SceneState, StepError, SubcyclingState, periodic_state, ranks,
+};
 use fractum_vtk::Compression;
 use serde::{Deserialize, Serialize};
 
@@ -395,7 +397,7 @@ impl Simulation {
             solids: Vec::new(),
             heat,
             subcycling,
-            periodic: self.scene.periodic_state(),
+            periodic: periodic_state(&self.scene),
             warnings: Cow::Borrowed(self.messages.of_steps()),
             record: Cow::Borrowed(record),
             later,

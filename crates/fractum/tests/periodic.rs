@@ -281,9 +281,11 @@ fn a_bed_is_sheared_with_the_same_bits_and_its_box_does_the_work_of_its_stress()
     let one = run(&place, "one", "1");
     let energy = |name: &str| one["energy"][name].as_f64().unwrap();
     assert!(energy("residual_max_relative") < 1e-3, "{}", one["energy"]);
-    assert!((one["probes"]["pressure"]["final"].as_f64().unwrap() / 1e3 - 1.0).abs() < 0.3, "{}", one["probes"]);
     let names = ["volume", "xx", "yy", "zz", "xy", "xz", "long", "high", "wide", "periodic_box", "momentum", "kinetic"];
     let rows = history(&place, "one", &names);
+    let late = &rows[rows.len() / 2..];
+    let held = [1, 2, 3].map(|k| late.iter().map(|row| row[k]).sum::<f64>() / late.len() as f64);
+    assert!(held.iter().all(|stress| (stress / -1e3 - 1.0).abs() < 0.05), "{held:?} Pa");
     let (work, booked) = (work_of_box(&rows, 20e-6), energy("periodic_box"));
     assert!((work / booked - 1.0).abs() < 0.01, "{work} and {booked} J");
     let mass = 2500.0 * 0.25 * 12e-3f64.powi(3);
@@ -364,7 +366,7 @@ fn what_a_periodic_box_cannot_be_beside_is_refused_by_name() {
     let both = "strain_rate = { xx = \"1 1/s\" }\nservo = { stress = { xx = \"-1 kPa\" }, rate = \"1 1/s\" }";
     refused(&with(&format!("{size}\n{both}"), ""), &["periodic.servo.stress.xx", "strain_rate gives its rate too"]);
     let deforms = format!("{size}\nstrain_rate = {{ xy = \"1 1/s\" }}");
-    refused(&with(&deforms, "damping = { local = 0.1 }"), &["damping would act on its mean flow"]);
+    refused(&with(&deforms, "[damping]\nlocal = 0.1"), &["damping would act on its mean flow"]);
     refused(&with(&deforms, "[[supports]]\ngroup = \"beads\"\nfix = \"x\""), &["supports would hold particles"]);
     let floor = "[[bodies]]\nname = \"floor\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"z\"";
     refused(&with(size, floor), &["\"floor\"", "would cross sides of the periodic box"]);

@@ -1,6 +1,6 @@
 //! Something about the periodic box.
 
-use fractum_scene::{BoxMeasure, NeededPoints, Probe, ProbeNeeds, ProbedScene, Scene};
+use fractum_scene::{BoxMeasure, NeededPoints, Probe, ProbeNeeds, ProbedScene, Scene, measure_periodic_box};
 
 use super::Measure;
 use super::scenery::Scenery;
@@ -63,7 +63,7 @@ struct OfBox(BoxMeasure);
 
 impl Probe for OfBox {
     fn value(&self, probed: &ProbedScene<'_>) -> f64 {
-        probed.scene.box_measure(self.0)
+        measure_periodic_box(probed.scene, self.0)
     }
 
     fn needs(&self, _: &Scene) -> ProbeNeeds {

@@ -1,7 +1,7 @@
 //! Contacts of particles as lines for ParaView.
 
 use fractum_math::Vec3;
-use fractum_scene::{ContactBody, ParticleContact, Scene};
+use fractum_scene::{ContactBody, ParticleContact, Scene, into_periodic_box, periodic_cell_of};
 use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
 
 use crate::OutputError;
@@ -22,12 +22,12 @@ pub(crate) fn file(scene: &Scene) -> Result<Option<PendingFile>, OutputError> {
     for contact in &contacts {
         let i = contact.particle as usize;
         let moved = all.position[i] - reference[i];
-        let [beyond, _] = scene.into_box(&all.position[i]);
+        let [beyond, _] = into_periodic_box(scene, &all.position[i]);
         // The place on a wall moves with the particle.
         let (other, other_moved) = match contact.other.map(|j| j as usize) {
             Some(j) => {
                 // The image that is touched: the place of contact is in the middle.
-                let image = if scene.periodic_cell().is_some() {
+                let image = if periodic_cell_of(scene).is_some() {
                     contact.place * 2.0 - all.position[i] - all.position[j]
                 } else {
                     Vec3::zeros()

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fractum_scene::{PeriodicCell, Scene};
+use fractum_scene::{PeriodicCell, Scene, into_periodic_box, periodic_cell_of};
 use fractum_vtk::PendingFile;
 
 use crate::frames::cracks::lost_bonds;
@@ -27,7 +27,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
     let _ = write!(text, "{}\nProperties={PROPERTIES} Time=", present.len());
     push_shortest(&mut text, scene.clock.time);
     let _ = write!(text, " Step={}", scene.clock.step);
-    match scene.periodic_cell() {
+    match periodic_cell_of(scene) {
         Some(cell) => push_cell(&mut text, cell),
         None => text.push_str(" pbc=\"F F F\"\n"),
     }
@@ -43,7 +43,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
         text.extend(name.chars().map(|c| if c.is_whitespace() { '_' } else { c }));
         let _ = write!(text, " {i}");
         let turn = all.orientation[i].coords;
-        let [beyond, faster] = scene.into_box(&all.position[i]);
+        let [beyond, faster] = into_periodic_box(scene, &all.position[i]);
         let vectors = |of: &fractum_math::Vec3| [of.x, of.y, of.z];
         let columns = [
             &vectors(&(all.position[i] + beyond))[..],
