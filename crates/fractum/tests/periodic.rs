@@ -39,7 +39,11 @@ history = { every = "20 us" }
 "#;
 
 fn beads(more: &str, places: &[[f64; 3]], velocities: &[[f64; 3]]) -> Workplace {
-    let place = Workplace::new(&BEADS.replace("MORE", more));
+    of_beads(&BEADS.replace("MORE", more), places, velocities)
+}
+
+fn of_beads(case: &str, places: &[[f64; 3]], velocities: &[[f64; 3]]) -> Workplace {
+    let place = Workplace::new(case);
     let row = |([x, y, z], [u, v, w]): (&[f64; 3], &[f64; 3])| format!("{x},{y},{z},1,{u},{v},{w}\n");
     let rows: String = places.iter().zip(velocities).map(row).collect();
     fs::write(place.path("beads.csv"), format!("x,y,z,radius,vx,vy,vz\n{rows}")).unwrap();
@@ -126,9 +130,10 @@ periodic_box = "coordination""#
         let place = beads(&more, &places, &vec![[0.0; 3]; places.len()]);
         let summary = run(&place, "out", "1");
         let value = |name: &str| summary["probes"][name]["final"].as_f64().unwrap();
-        assert!((value("strain") / -e - 1.0).abs() < 1e-6, "{}", value("strain"));
+        // The rate ends within a step.
+        assert!((value("strain") / -e - 1.0).abs() < 1e-4, "{}", value("strain"));
         assert_eq!(value("coordination"), 12.0);
-        let (pressure, modulus) = stress_of_lattice(e);
+        let (pressure, modulus) = stress_of_lattice(-value("strain"));
         assert!((value("pressure") / pressure - 1.0).abs() < 1e-3, "{} and {pressure}", value("pressure"));
         let shear = modulus * value("angle");
         assert!((value("shear") / shear - 1.0).abs() < 1e-3, "{} and {shear}", value("shear"));
@@ -147,15 +152,13 @@ contact = { friction = 0, restitution = 1 }
 name = "beads"
 kind = "particles"
 material = "glass"
-shape = "box"
-size = ["20 mm", "20 mm", "20 mm"]
-particle_radius = "1 mm"
-particles = 100
-initial_velocity = { x = "1 m/s*sin(x/(0.14 mm) + y/(0.3 mm))", y = "1 m/s*sin(y/(0.2 mm) + z/(0.13 mm))", z = "1 m/s*sin(z/(0.11 mm) + x/(0.7 mm))" }
+file = "beads.csv"
+unit = "mm"
+velocity_unit = "m/s"
 [periodic]
 size = ["20 mm", "20 mm", "20 mm"]
 [solver]
-end = "0.2 s"
+end = "0.4 s"
 [[probes]]
 name = "pressure"
 periodic_box = "pressure"
@@ -178,7 +181,10 @@ history = { every = "20 us" }
 /// Carnahan and Starling (1969): p V/(N k T) of hard spheres at a solid fraction φ is (1 + φ + φ² - φ³)/(1 - φ)³.
 #[test]
 fn a_gas_keeps_its_energy_and_has_the_pressure_of_hard_spheres() {
-    let place = Workplace::new(GAS);
+    let places: Vec<[f64; 3]> = (0..100).map(|n| [4 * (n % 5), 4 * (n / 5 % 5), 5 * (n / 25)].map(f64::from)).collect();
+    let wave = |n: usize, k: usize| 0.4 * (1.0 + 7.3 * n as f64 + (31 * n + 11) as f64 * 0.77 * (k + 1) as f64).sin();
+    let velocities: Vec<[f64; 3]> = (0..100).map(|n| [0, 1, 2].map(|k| wave(n, k))).collect();
+    let place = of_beads(GAS, &places, &velocities);
     let summary = run(&place, "out", "2");
     assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
     let rows = history(&place, "out", &["kinetic", "contact", "pressure", "px", "py", "pz"]);
