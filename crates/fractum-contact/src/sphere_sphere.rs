@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use fractum_kernels::contact::{ContactLaw, PairMotion};
-use fractum_math::{Vec3, Work};
+use fractum_math::{Mat3, Vec3, Work};
 use rayon::prelude::*;
 
 use crate::broad_phase::close_pairs;
+use crate::periodic::{Images, PeriodicCell};
 use crate::touch::Spheres;
 
 /// Pairs handled as one piece of parallel work.
@@ -40,6 +41,8 @@ pub struct SphereContacts<L: ContactLaw> {
     works: Vec<Work>,
     /// Pairs of which only the second sphere is in a range, where forces on that are wanted.
     cut: Option<(Range<usize>, Vec<u32>)>,
+    /// Images in which pairs meet, in a box that repeats.
+    images: Option<Box<Images>>,
 }
 
 /// Force of a pair and its energies.
@@ -71,7 +74,18 @@ impl<L: ContactLaw> SphereContacts<L> {
             pairs_of: Vec::new(),
             works: Vec::new(),
             cut: None,
+            images: None,
         }
+    }
+
+    /// The same in a box that repeats. Its sides must be apart by more than twice the distance at which two spheres are near.
+    pub fn within(self, cell: PeriodicCell) -> Self {
+        SphereContacts { images: Some(Box::new(Images::new(cell))), keeps_loads: true, ..self }
+    }
+
+    /// Takes the box as it is now.
+    pub fn set_cell(&mut self, cell: &PeriodicCell) {
+        self.images.iter_mut().for_each(|images| images.cell = *cell);
     }
 
     /// The same for laws that act across gaps up to `reach` [m].
@@ -92,6 +106,15 @@ impl<L: ContactLaw> SphereContacts<L> {
 
     /// Whether the skin is used up, by the way of some of the spheres.
     pub fn is_used_up(&self, spheres: &Spheres, range: Range<usize>) -> bool {
+        if let Some(images) = &self.images {
+            let widest = spheres.radius.iter().fold(0.0f64, |a, &b| a.max(b));
+            let (left, carry) = images.left(2.0 * widest + self.reach, self.skin);
+            let corner = images.cell.corner;
+            let moved = |(x, at): (&Vec3, &Vec3)| (x - corner - carry * (at - corner)).norm_squared() > left * left;
+            return left < 0.0
+                || self.searched_at.len() != spheres.position.len()
+                || spheres.position[range.clone()].iter().zip(&self.searched_at[range]).any(moved);
+        }
         let limit = 0.25 * self.skin * self.skin;
         let moved = |(x, at): (&Vec3, &Vec3)| (x - at).norm_squared() > limit;
         self.searched_at.len() != spheres.position.len()
@@ -104,7 +127,11 @@ impl<L: ContactLaw> SphereContacts<L> {
     pub fn renew(&mut self, spheres: &Spheres, law: impl Fn(u32, u32) -> Option<L> + Sync) {
         self.searched_at.clear();
         self.searched_at.extend_from_slice(spheres.position);
-        let near = close_pairs(spheres.position, spheres.radius, self.skin + self.reach);
+        let skin = self.skin + self.reach;
+        let near = match &mut self.images {
+            Some(images) => images.close_pairs(spheres, skin),
+            None => close_pairs(spheres.position, spheres.radius, skin),
+        };
         let found: Vec<([u32; 2], L)> =
             near.into_par_iter().filter_map(|[i, j]| law(i, j).map(|law| ([i, j], law))).collect();
         let old = std::mem::take(&mut self.pairs);
@@ -119,6 +146,9 @@ impl<L: ContactLaw> SphereContacts<L> {
             self.touching.push(known && old_touching[place]);
         }
         (self.pairs, self.laws) = found.into_iter().unzip();
+        if let Some(images) = &mut self.images {
+            images.note(self.pairs.iter().copied(), spheres.position);
+        }
         self.index(spheres.position.len());
     }
 
@@ -179,14 +209,17 @@ impl<L: ContactLaw> SphereContacts<L> {
         dt: f64,
     ) {
         let own = self.pairs_from(range.start)..self.pairs_from(range.end);
-        let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, works, cut, .. } = self;
+        let SphereContacts { pairs, laws, memories, touching, loads, starts, pairs_of, works, cut, images, .. } = self;
+        let images = images.as_deref();
         loads.resize(pairs.len(), PairLoad::default());
         let chunks = pairs[own.clone()].par_chunks(BLOCK).zip(laws[own.clone()].par_chunks(BLOCK));
         let memory = memories[own.clone()].par_chunks_mut(BLOCK).zip(touching[own.clone()].par_chunks_mut(BLOCK));
-        chunks.zip(memory).zip(loads[own.clone()].par_chunks_mut(BLOCK)).for_each(
-            |(((pairs, laws), (memories, touching)), loads)| {
+        chunks.zip(memory).zip(loads[own.clone()].par_chunks_mut(BLOCK)).enumerate().for_each(
+            |(block, (((pairs, laws), (memories, touching)), loads))| {
+                let first = own.start + block * BLOCK;
                 for k in 0..pairs.len() {
-                    loads[k] = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt)
+                    let shift = images.map(|images| images.shift(first + k));
+                    loads[k] = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, shift, dt)
                         .unwrap_or_default();
                 }
             },
@@ -197,8 +230,9 @@ impl<L: ContactLaw> SphereContacts<L> {
             *cut = Some((range.clone(), (0..own.start as u32).filter(is_cut).collect()));
         }
         for k in cut.iter().flat_map(|(_, pairs)| pairs).map(|&k| k as usize) {
-            loads[k] =
-                pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt).unwrap_or_default();
+            let shift = images.map(|images| images.shift(k));
+            loads[k] = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, shift, dt)
+                .unwrap_or_default();
         }
         let (loads, pairs) = (&*loads, &*pairs);
         let (forces, moments) = (&mut force[range.clone()], &mut moment[range.clone()]);
@@ -275,10 +309,11 @@ impl<L: ContactLaw> SphereContacts<L> {
     }
 
     fn add_one_by_one(&mut self, spheres: &Spheres, force: &mut [Vec3], moment: &mut [Vec3], dt: f64) -> Work {
+        // A box that repeats keeps the loads.
         let SphereContacts { pairs, laws, memories, touching, works, .. } = self;
         works.fill(Work::default());
         for k in 0..pairs.len() {
-            let load = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, dt);
+            let load = pair_load(pairs[k], &laws[k], &mut memories[k], &mut touching[k], spheres, None, dt);
             if let Some(load) = load {
                 let [i, j] = pairs[k].map(|id| id as usize);
                 force[i] -= load.force;
@@ -296,8 +331,7 @@ impl<L: ContactLaw> SphereContacts<L> {
     pub fn accept_initial_overlap(&mut self, spheres: &Spheres, which: impl Fn(u32, u32) -> bool) {
         for k in 0..self.pairs.len() {
             let [i, j] = self.pairs[k];
-            let apart = spheres.position[j as usize] - spheres.position[i as usize];
-            let overlap = spheres.radius[i as usize] + spheres.radius[j as usize] - apart.norm();
+            let overlap = self.overlap(k, spheres);
             if overlap > 0.0 && which(i, j) {
                 self.memories[k] = L::Memory::default();
                 L::add_overlap_offset(&mut self.memories[k], overlap);
@@ -316,9 +350,28 @@ impl<L: ContactLaw> SphereContacts<L> {
             .map(|(p, _)| (*p.0, p.1))
     }
 
-    /// Pairs that touched at the last step, with what they remember.
-    pub fn memories_touching(&self) -> impl Iterator<Item = ([u32; 2], &L::Memory)> {
-        (0..self.pairs.len()).filter(|&k| self.touching[k]).map(|k| (self.pairs[k], &self.memories[k]))
+    /// Pairs that touched at the last step, with what they remember and from the first centre to the second one, or to its image [m].
+    pub fn memories_touching<'a>(
+        &'a self,
+        spheres: &'a Spheres,
+    ) -> impl Iterator<Item = ([u32; 2], &'a L::Memory, Vec3)> {
+        let touching = (0..self.pairs.len()).filter(|&k| self.touching[k]);
+        touching.map(|k| (self.pairs[k], &self.memories[k], self.apart(k, spheres)))
+    }
+
+    /// Sums over the pairs of the last step, with forces f on the second spheres [N]: Σ f ⊗ n with the edges n of the box
+    /// between a sphere and its image [N], and Σ f ⊗ r with the vectors r between the centres [N m]; none without such a box.
+    pub fn sums_through_box(&self, spheres: &Spheres) -> Option<[Mat3; 2]> {
+        let images = self.images.as_ref()?;
+        let (mut through, mut virial) = (Mat3::zeros(), Mat3::zeros());
+        for (k, load) in self.loads.iter().enumerate().filter(|(_, load)| load.force != Vec3::zeros()) {
+            let force = load.force;
+            virial += force * self.apart(k, spheres).transpose();
+            if images.of_pairs[k] != [0; 3] {
+                through += force * images.edges_between(k).transpose();
+            }
+        }
+        Some([through, virial])
     }
 
     /// Pairs that touched at the last step.
@@ -328,21 +381,25 @@ impl<L: ContactLaw> SphereContacts<L> {
 
     /// Near pairs that overlap where the spheres are now, with their depths [m].
     pub fn overlaps<'a>(&'a self, spheres: &'a Spheres) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
-        let depth = |[i, j]: [u32; 2]| {
-            let (i, j) = (i as usize, j as usize);
-            spheres.radius[i] + spheres.radius[j] - (spheres.position[j] - spheres.position[i]).norm()
-        };
-        self.pairs.iter().map(move |&pair| (pair, depth(pair))).filter(|(_, depth)| *depth > 0.0)
+        (0..self.pairs.len()).map(|k| (self.pairs[k], self.overlap(k, spheres))).filter(|(_, depth)| *depth > 0.0)
+    }
+
+    /// From the centre of the first sphere of a near pair to that of the second, or of its image [m].
+    fn apart(&self, pair: usize, spheres: &Spheres) -> Vec3 {
+        let [i, j] = self.pairs[pair].map(|id| id as usize);
+        let apart = spheres.position[j] - spheres.position[i];
+        self.images.as_ref().map_or(apart, |images| apart + images.shift(pair)[0])
+    }
+
+    fn overlap(&self, pair: usize, spheres: &Spheres) -> f64 {
+        let [i, j] = self.pairs[pair].map(|id| id as usize);
+        spheres.radius[i] + spheres.radius[j] - self.apart(pair, spheres).norm()
     }
 
     /// Pairs that touched at the last step, with the depth to which each is pressed together now [m]: its overlap beyond what
     /// was accepted at the start.
     pub fn pressed<'a>(&'a self, spheres: &'a Spheres) -> impl Iterator<Item = ([u32; 2], f64)> + 'a {
-        let depth = |k: usize| {
-            let [i, j] = self.pairs[k].map(|id| id as usize);
-            let apart = (spheres.position[j] - spheres.position[i]).norm();
-            spheres.radius[i] + spheres.radius[j] - apart - L::overlap_offset(&self.memories[k])
-        };
+        let depth = |k: usize| self.overlap(k, spheres) - L::overlap_offset(&self.memories[k]);
         (0..self.pairs.len()).filter(|&k| self.touching[k]).map(move |k| (self.pairs[k], depth(k)))
     }
 
@@ -368,10 +425,14 @@ fn pair_load<L: ContactLaw>(
     memory: &mut L::Memory,
     touching: &mut bool,
     spheres: &Spheres,
+    shift: Option<[Vec3; 2]>,
     dt: f64,
 ) -> Option<PairLoad> {
     let (i, j) = (i as usize, j as usize);
-    let apart = spheres.position[j] - spheres.position[i];
+    let mut apart = spheres.position[j] - spheres.position[i];
+    if let Some([offset, _]) = shift {
+        apart += offset;
+    }
     let reach = spheres.radius[i] + spheres.radius[j];
     let square = apart.norm_squared();
     let felt = reach + law.reach();
@@ -386,7 +447,10 @@ fn pair_load<L: ContactLaw>(
     let arm = distance / reach;
     let (arm_i, arm_j) = (arm * spheres.radius[i], arm * spheres.radius[j]);
     let turning = (spheres.spin[i] * arm_i + spheres.spin[j] * arm_j).cross(&normal);
-    let velocity = spheres.velocity[j] - spheres.velocity[i] - turning;
+    let mut velocity = spheres.velocity[j] - spheres.velocity[i] - turning;
+    if let Some([_, of_image]) = shift {
+        velocity += of_image;
+    }
     let spin = spheres.spin[j] - spheres.spin[i];
     let motion = PairMotion { normal, overlap: reach - distance, velocity, spin, dt };
     let force = law.force(&motion, memory);

@@ -145,6 +145,8 @@ codes! {
     LiquidOverdrawn = "liquid-overdrawn",
     /// A rate at which an inlet has no room for its particles.
     InletRate = "inlet-rate",
+    /// Gravity in a box that repeats along all axes.
+    FreeFall = "free-fall",
     /// Particles that are due, and find no free place in their inlet.
     InletBlocked = "inlet-blocked",
     /// An element that had begun to break was turned inside out, and taken out.

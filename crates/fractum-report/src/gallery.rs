@@ -8,7 +8,7 @@ use fractum_output::atomic::Group;
 use fractum_output::frames::cracks::lost_bonds;
 use fractum_output::frames::{Triangles, corners, drawn_surfaces, extent};
 use fractum_output::notes::{BROKEN_BONDS, CLOSER, DAMAGE, PARTICLES, PictureNote, STRESS, TEMPERATURE};
-use fractum_scene::{BondedBody, CountKind, Scene};
+use fractum_scene::{BondedBody, CountKind, Scene, into_periodic_box};
 use serde::{Deserialize, Serialize};
 
 use crate::picture::{ColourMap, View, robust_range};
@@ -138,8 +138,8 @@ pub fn draw(scene: &Scene, skin: Skin, folder: &Path, instant: &str, files: &mut
     let size = extent(solid.reference.iter().chain(bonded.reference()));
     let attached = scene.attached_nodes();
     let of_nodes = (0..attached.len()).filter(|&n| attached[n]).map(|n| solid.displacement_from_start(n).norm());
-    let moved: Vec<Vec3> =
-        bonded.particles.position.iter().zip(bonded.reference()).map(|(x, start)| x - start).collect();
+    let places = bonded.particles.position.iter().map(|x| x + into_periodic_box(scene, x)[0]);
+    let moved: Vec<Vec3> = places.zip(bonded.reference()).map(|(x, start)| x - start).collect();
     let largest = of_nodes.chain(moved.iter().map(|u| u.norm())).fold(0.0, f64::max);
     let Skin { facets, damage, stress } = &skin;
     let strain = |facet: &[u32; 3]| {

@@ -7,6 +7,7 @@ use crate::clock::ThisStep;
 use crate::error::StepError;
 use crate::interfaces::Interfaces;
 use crate::ledger::{Books, EnergyKind, Ledger};
+use crate::periodic::box_energies;
 use crate::ranks::gather_all;
 use crate::scene::{Optional, Scene};
 use crate::watch::{Notice, Site};
@@ -75,6 +76,9 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     ledger[EnergyKind::Absorbed] = books.absorbed + optional.surface_supports.absorbed();
     ledger[EnergyKind::Left] = books.left;
     ledger[EnergyKind::Entered] = books.entered;
+    let [of_box, streaming, flow] = box_energies(optional.periodic.as_deref());
+    ledger[EnergyKind::PeriodicBox] = of_box;
+    ledger[EnergyKind::Kinetic] -= streaming;
     book_interfaces(ledger, books, &optional.interfaces);
     ledger[EnergyKind::Foundation] = optional.surface_supports.stored();
     if scene.clock.step == 0 {
@@ -96,6 +100,8 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
         // What the gas has done is in play; what it holds may be much more, and its rounding is no energy.
         ledger.scale = ledger.scale.max((supplied - held - leaked).abs()).max(GAS_ROUND_OFF * held);
     }
+    // Particles that meet in a box that deforms take from its mean flow.
+    ledger.scale = ledger.scale.max(flow);
     // The first touch of a rigid body is found to a step only; it is measured by what a particle takes from it, not by the little
     // work done so far.
     ledger.scale = ledger.scale.max(contacts.touch_energy(&bonded.particles));

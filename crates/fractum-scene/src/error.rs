@@ -303,6 +303,21 @@ pub enum StepError {
         /// Width of a band [m].
         width: f64,
     },
+    /// A box that repeats has become too narrow for its particles.
+    #[error(
+        "step {step}, t = {time:.6e} s: opposite sides of the periodic box are {narrowest:.4e} m apart, and its particles need {needed:.4e} m: they could touch \
+         twice - end the run before with solver.stop_when, or begin with a larger box"
+    )]
+    BoxTooNarrow {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+        /// Least distance of opposite sides [m].
+        narrowest: f64,
+        /// What is needed [m].
+        needed: f64,
+    },
     /// The energy balance does not close.
     #[error(
         "step {step}, t = {time:.6e} s: the energy balance is off by {relative:.2e} of the energy put in (limit {allowed:.0e}); largest kinetic \

@@ -62,6 +62,8 @@ pub enum EnergyKind {
     Left,
     /// Energy of motion with which particles have come in through inlets.
     Entered,
+    /// Work of a box that repeats on what is in it, by its deformation.
+    PeriodicBox,
 }
 
 /// What an entry is to the energy balance.
@@ -138,6 +140,7 @@ impl EnergyKind {
         entry(EnergyKind::LiquidLeaked, "liquid_leaked", "Liquid leaked", EnergyRole::Spent),
         entry(EnergyKind::Left, "left", "Left the run", EnergyRole::Spent),
         entry(EnergyKind::Entered, "entered", "Entered the run", EnergyRole::Supplied),
+        entry(EnergyKind::PeriodicBox, "periodic_box", "Work of the periodic box", EnergyRole::Supplied),
     ];
 
     const fn entry(self) -> &'static Entry {
@@ -199,6 +202,7 @@ pub struct Ledger {
     pub initial: f64,
     /// The part of it that in-situ stress has stored: it is there, but not in play.
     pub in_situ: f64,
+    #[serde(with = "without_box")]
     entries: [f64; EnergyKind::COUNT],
     /// Largest |residual| over [`Ledger::scale`] so far.
     pub residual_max_relative: f64,
@@ -233,6 +237,26 @@ impl AddAssign<Work> for Books {
         self.damping += work.damping;
         self.friction += work.friction;
         self.time_step += work.linked;
+    }
+}
+
+/// The entries as they are saved: without the work of the box that repeats, which the box keeps itself, so that the states of scenes without
+/// one know nothing of it.
+mod without_box {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::EnergyKind;
+
+    const SAVED: usize = EnergyKind::PeriodicBox as usize;
+
+    pub(super) fn serialize<S: Serializer>(all: &[f64; EnergyKind::COUNT], to: S) -> Result<S::Ok, S::Error> {
+        let saved: [f64; SAVED] = std::array::from_fn(|i| all[i]);
+        saved.serialize(to)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; EnergyKind::COUNT], D::Error> {
+        let saved = <[f64; SAVED]>::deserialize(from)?;
+        Ok(std::array::from_fn(|i| saved.get(i).copied().unwrap_or(0.0)))
     }
 }
 
@@ -278,6 +302,7 @@ impl Ledger {
     /// Takes the present values into the running maxima.
     pub(crate) fn update_maxima(&mut self) {
         self.scale = self.scale.max(self.initial - self.in_situ).max(self[EnergyKind::External].abs());
+        self.scale = self.scale.max(self[EnergyKind::PeriodicBox].abs());
         // Adhesion has given what it binds.
         self.scale = self
             .scale

@@ -31,6 +31,7 @@ mod ledger;
 mod liquid;
 mod measure;
 mod modes;
+mod periodic;
 mod pumped;
 pub mod ranks;
 mod saved;
@@ -57,7 +58,7 @@ pub use enter::{entered_of, inlets_of, with_inlets};
 pub use error::{SceneError, StepError};
 pub use excavation::Excavation;
 pub use fractum_contact::law::{ContactParameters, ElasticMaterial, damping_of_restitution, restitution_of_damping};
-pub use fractum_contact::{FacetMesh, Frame, Shape, SurfaceError};
+pub use fractum_contact::{FacetMesh, Frame, PeriodicCell, Shape, SurfaceError};
 pub use fractum_gas::{Amount, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow};
 pub use fractum_heat::HeatCondition;
 pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, Roughness, SpringInterface};
@@ -85,6 +86,10 @@ pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};
 pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use modes::{Mode, Modes};
+pub use periodic::{
+    BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, into_periodic_box, measure_periodic_box,
+    periodic_cell, periodic_cell_of, periodic_state, restore_periodic, with_periodic_box,
+};
 pub use pumped::{liquid_of, with_liquid};
 pub use ranks::Watched;
 pub use saved::SceneState;

@@ -17,6 +17,7 @@ use crate::interfaces::Interfaces;
 use crate::ledger::{Books, Ledger};
 use crate::liquid::Liquid;
 use crate::modes::Modes;
+use crate::periodic::PeriodicBox;
 use crate::watch::Watch;
 
 /// One simulation: bodies, boundary conditions, clock and ledger.
@@ -66,6 +67,8 @@ pub(crate) struct Optional {
     /// Where particles come into the run.
     pub(crate) inlets: Vec<Inlet>,
     pub(crate) entered: Entered,
+    /// The box through whose sides particles meet.
+    pub(crate) periodic: Option<Box<PeriodicBox>>,
     /// What was noticed beyond the models of the scene.
     pub(crate) watch: Watch,
 }

@@ -10,6 +10,7 @@ use crate::enter::let_particles_enter;
 use crate::error::StepError;
 use crate::interfaces::motion::InterfaceStep;
 use crate::leave::{hold_departed_particles, remove_departed_fragments, remove_departed_particles};
+use crate::periodic::{book_box, deform_box, start_box};
 use crate::ranks::{follow_near, follow_removal, gather_watched, search_together};
 use crate::scene::Scene;
 use crate::stable_step::{next_dt, update_contact_frequency, update_wall_frequency};
@@ -49,6 +50,7 @@ impl Scene {
     /// As [`Scene::step`].
     pub fn step_observed(&mut self, measure: bool, mut passed: impl FnMut(Phase)) -> Result<StepReport, StepError> {
         let step = this_step(self, measure);
+        start_box(self, &step);
         add_internal_forces(self, &step, &mut passed)?; // -∫ Bᵀσ dV; damage evolves
         let (bonded_load, faces) = add_bond_forces(self, &step, &mut passed);
         finish_expansion(self, &mut passed);
@@ -65,12 +67,14 @@ impl Scene {
         hold_departed_particles(self);
         remove_departed_particles(self, step.dt_before);
         let_particles_enter(self, &step);
+        deform_box(self, &step)?;
         let expansion = conduct(self, step.dt_after, &mut passed)?;
         break_bonds(self, step.measure || step.changes, &mut passed);
         let mut work = advance(self, step.measure || step.changes, &mut passed); // vⁿ⁺½, uⁿ⁺¹
         work.after.external += expansion;
         work.before.external += load;
         book(self, &step, contact, work, given)?;
+        book_box(self);
         self.optional.surface_supports.absorb_after(&mut self.solid, step.dt_after);
         passed(Phase::Motion);
         let report = change_solids(self, step.dt_after);

@@ -326,6 +326,9 @@ impl Plan {
             self.add(
                 "load",
                 match driven.as_slice() {
+                    [] if case.periodic.as_ref().is_some_and(|own| own.deforms()) => {
+                        "none: the periodic box moves this scene".to_owned()
+                    }
                     [] => "none: only initial velocities move this scene".to_owned(),
                     driven => format!("none: rigid bodies move this scene: {}", driven.join(", ")),
                 },

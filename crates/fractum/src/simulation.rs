@@ -28,7 +28,9 @@ use fractum_output::origin::Origin;
 use fractum_output::summary::Summary;
 use fractum_output::warning::Warning;
 use fractum_prepare::Cache;
-use fractum_scene::{EnergyKind, HeatState, Scene, SceneState, StepError, SubcyclingState, ranks};
+use fractum_scene::{
+    EnergyKind, HeatState, PeriodicState, Scene, SceneState, StepError, SubcyclingState, periodic_state, ranks,
+};
 use fractum_vtk::Compression;
 use serde::{Deserialize, Serialize};
 
@@ -153,6 +155,7 @@ struct RunState<'a> {
     solids: Vec<SolidPart>,
     heat: Option<HeatState>,
     subcycling: Option<SubcyclingState>,
+    periodic: Option<PeriodicState>,
     /// What the steps so far have brought.
     warnings: Cow<'a, [Warning]>,
     record: Cow<'a, RecordState>,
@@ -394,6 +397,7 @@ impl Simulation {
             solids: Vec::new(),
             heat,
             subcycling,
+            periodic: periodic_state(&self.scene),
             warnings: Cow::Borrowed(self.messages.of_steps()),
             record: Cow::Borrowed(record),
             later,

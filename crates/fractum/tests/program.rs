@@ -31,6 +31,7 @@ mod new;
 mod particle_files;
 mod parts;
 mod peeling;
+mod periodic;
 mod processor;
 mod ranks;
 mod ranks_mesh;

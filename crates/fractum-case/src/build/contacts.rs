@@ -11,7 +11,7 @@ use fractum_scene::{
 };
 
 use super::bodies::{Numbering, Part};
-use super::{Context, function};
+use super::{Context, function, periodic};
 use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape, ServoForce, SolverKind};
 use crate::{Diagnostic, Spanned};
 
@@ -81,6 +81,10 @@ pub(super) fn with_contacts(
     }
     let contacts = Contacts::new(&scene.bonded, materials, rigid_bodies, solids, gravity(context));
     let mut contacts = contacts.with_pairs(pairs);
+    let cell = periodic::cell(context.case);
+    if let Some(cell) = cell {
+        contacts = contacts.within(cell);
+    }
     if !tied.is_empty() {
         // A bonded region fits its cavity within the tolerance of the packing.
         contacts.take_up_on_solids(&scene.solid, &scene.bonded.particles, |i| {
@@ -92,6 +96,10 @@ pub(super) fn with_contacts(
     warnings.extend(overlap_of_particles(context, &scene, &deep, NO_FORCE));
     warnings.extend(particle_overlaps(context, &scene, &mut contacts));
     let mut scene = scene.with_contacts(contacts, surface);
+    if let Some(cell) = cell {
+        scene = periodic::with_box(context, scene, cell);
+        context.without_mistakes()?;
+    }
     let nodes = deep_nodes(&scene, surface);
     warnings.extend(node_overlaps(context, &scene, &nodes));
     let told = nodes.iter().filter_map(|(_, _, other)| match other {

@@ -145,6 +145,7 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
             || pressed
             || stage.in_situ.is_some() && (!stage.interfaces.is_empty() || stage.materials.iter().any(breaks))
             || stage.excavation.is_some()
+            || stage.periodic.as_ref().is_some_and(|periodic| periodic.deforms())
             || stage.supports.iter().any(moved)
             || stage.loads.iter().any(|load| load.kind.functions().iter().any(|function| !function.value.is_zero()))
     };

@@ -27,6 +27,7 @@ mod meeting_doubts;
 mod model_doubts;
 mod network;
 mod notches;
+mod periodic;
 mod ppv;
 mod precheck;
 mod probes;

@@ -14,7 +14,7 @@ use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, taken_
 use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
-use super::{contact_pairs, inlets};
+use super::{contact_pairs, inlets, periodic};
 use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
 use crate::{Diagnostic, Spanned, TimeFunction};
 
@@ -64,6 +64,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(if without.is_empty() { rebounds(case) } else { without });
     doubts.extend(adhesion_in_vain(case));
     doubts.extend(inlets::doubts(case));
+    doubts.extend(periodic::doubts(case));
     doubts.extend(contact_pairs::in_vain(case, bodies.iter().any(|body| body.plane)));
     doubts.extend(unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies)));
     let joined = pieces(mesh, &bodies);

@@ -7,7 +7,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Domain, Scene};
 
-use super::{Context, inlets, interfaces, liquid, rate};
+use super::{Context, inlets, interfaces, liquid, periodic, rate};
 use crate::measure::ContactForce;
 use crate::model::{
     Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape,
@@ -31,6 +31,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     inlets::check(context);
     interfaces::check(context);
     liquid::check(context);
+    periodic::check(context);
     rate::check(context);
 }
 
@@ -254,7 +255,12 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
 }
 
-fn check_function<T>(context: &mut Context<'_>, function: &TimeFunction, written: &Spanned<T>, on: Option<&Selection>) {
+pub(super) fn check_function<T>(
+    context: &mut Context<'_>,
+    function: &TimeFunction,
+    written: &Spanned<T>,
+    on: Option<&Selection>,
+) {
     let mut positions: Vec<Vec3> = Vec::new();
     if let Some(on) = on.filter(|_| function.depends_on_position()) {
         let all = || (0..context.mesh.nodes.len() as u32).collect();

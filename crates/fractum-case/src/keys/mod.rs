@@ -10,6 +10,7 @@ mod interfaces;
 mod liquid;
 mod network;
 mod output;
+mod periodic;
 mod probes;
 mod solver;
 
@@ -42,7 +43,7 @@ pub fn keys() -> &'static [KeyDoc] {
         let fields: Vec<KeyDoc> = OutputField::ALL.iter().map(field).collect();
         let output = [output::FIRST, &fields, output::LAST].concat();
         let before = [bodies::KEYS, interfaces::KEYS, network::KEYS, conditions::KEYS, gas::KEYS, heat::KEYS].concat();
-        let before = [before, liquid::KEYS.to_vec(), solver::KEYS.to_vec()].concat();
+        let before = [before, liquid::KEYS.to_vec(), periodic::KEYS.to_vec(), solver::KEYS.to_vec()].concat();
         [before, probes, output].concat()
     });
     &KEYS

@@ -21,6 +21,7 @@ mod load;
 mod mode;
 mod moment;
 mod momentum;
+mod periodic_box;
 mod radial_cracks;
 mod reaction;
 mod rotation;
@@ -163,6 +164,7 @@ measures! {
     heat::HeatOfAll,
     gas::GasIn,
     liquid::LiquidIn,
+    periodic_box::PeriodicBox,
     crack_area::CrackArea,
     crack::Crack,
     radial_cracks::RadialCracksAbout,

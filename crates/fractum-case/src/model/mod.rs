@@ -16,6 +16,7 @@ mod loose;
 mod material;
 mod network;
 mod output;
+mod periodic;
 mod plot;
 mod ppv;
 mod probe;
@@ -52,6 +53,7 @@ pub use loose::{LooseBody, LooseSource};
 pub use material::{Beds, Damage, Material};
 pub use network::{GrainsWithin, JointSource, Joints, Network};
 pub use output::Output;
+pub use periodic::{BoxServo, Periodic};
 pub use plot::{Plot, PlotReference, PlotScale};
 pub use ppv::{Ppv, Scaling, StationLine};
 pub use probe::{Probe, load_of};
@@ -95,6 +97,8 @@ pub struct Case {
     pub in_situ: Option<InSitu>,
     /// Gas, heat and liquid.
     pub flows: Flows,
+    /// The box through whose sides particles meet.
+    pub periodic: Option<Box<Periodic>>,
     /// What leaves as the stage begins, where stages take something out.
     pub excavation: Option<Excavation>,
     /// Damping of the solids.

@@ -24,6 +24,7 @@ mod names;
 mod network;
 mod output;
 mod parameters;
+mod periodic;
 mod plots;
 mod ppv;
 mod probes;
@@ -218,6 +219,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let gas = gas::read(&table, solver.as_ref(), !stage.is_empty());
     let heat = heat::read(&table, solver.as_ref(), !stage.is_empty());
     let liquid = liquid::read(&table);
+    let periodic = periodic::read(&table);
     let plots = plots::read(&table, &probes);
     let output = output::read(&table, solver.as_ref().map(|solver| solver.end), plots);
     let expect = expect::read(&table, &probes);
@@ -245,6 +247,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
         loads: loads?,
         in_situ: in_situ?,
         flows: Flows { gas: gas?, heat: heat?, liquid: liquid? },
+        periodic: periodic?.map(Box::new),
         excavation: excavation?,
         damping,
         solver: solver?,

@@ -1,6 +1,7 @@
 //! Contacts of particles as lines for ParaView.
 
-use fractum_scene::{ContactBody, ParticleContact, Scene};
+use fractum_math::Vec3;
+use fractum_scene::{ContactBody, ParticleContact, Scene, into_periodic_box, periodic_cell_of};
 use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
 
 use crate::OutputError;
@@ -21,12 +22,21 @@ pub(crate) fn file(scene: &Scene) -> Result<Option<PendingFile>, OutputError> {
     for contact in &contacts {
         let i = contact.particle as usize;
         let moved = all.position[i] - reference[i];
+        let [beyond, _] = into_periodic_box(scene, &all.position[i]);
         // The place on a wall moves with the particle.
         let (other, other_moved) = match contact.other.map(|j| j as usize) {
-            Some(j) => (reference[j], all.position[j] - reference[j]),
+            Some(j) => {
+                // The image that is touched: the place of contact is in the middle.
+                let image = if periodic_cell_of(scene).is_some() {
+                    contact.place * 2.0 - all.position[i] - all.position[j]
+                } else {
+                    Vec3::zeros()
+                };
+                (reference[j] + image, all.position[j] - reference[j])
+            }
             None => (contact.place - moved, moved),
         };
-        points.extend([reference[i], other].map(<[f64; 3]>::from));
+        points.extend([reference[i] + beyond, other + beyond].map(<[f64; 3]>::from));
         displacement.extend([moved, other_moved].map(<[f64; 3]>::from));
     }
     let lines: Vec<[u32; 2]> = (0..contacts.len() as u32).map(|line| [2 * line, 2 * line + 1]).collect();

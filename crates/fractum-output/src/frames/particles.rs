@@ -4,7 +4,7 @@
 
 use fractum_dem::stress::particle_virials;
 use fractum_math::{Sym3, Vec3, rotation_vector};
-use fractum_scene::{BondedBody, Scene};
+use fractum_scene::{BondedBody, Scene, into_periodic_box};
 use fractum_vtk::{Compression, Cut, Field, PendingFile, PolyCells, PolyData, Values};
 
 use crate::OutputError;
@@ -99,9 +99,11 @@ fn particles_file(
     let (bonded, all) = (&scene.bonded, &scene.bonded.particles);
     let shown = || bodies.iter().flat_map(|(_, body)| body.range.clone());
     let scalar = |of: &[f64]| shown().map(|i| of[i]).collect::<Vec<f64>>();
-    let points = vectors(shown().map(|i| bonded.reference()[i]));
+    // In a box that repeats the images within it are shown, which have come as far as the particles.
+    let into_box: Vec<[Vec3; 2]> = shown().map(|i| into_periodic_box(scene, &all.position[i])).collect();
+    let points = vectors(shown().zip(&into_box).map(|(i, [beyond, _])| bonded.reference()[i] + beyond));
     let displacement = vectors(shown().map(|i| all.position[i] - bonded.reference()[i]));
-    let velocity = vectors(shown().map(|i| all.velocity[i]));
+    let velocity = vectors(shown().zip(&into_box).map(|(i, [_, beyond])| all.velocity[i] + beyond));
     let spin = vectors(shown().map(|i| all.spin[i]));
     let rotation = vectors(shown().map(|i| rotation_vector(&all.orientation[i])));
     let body: Vec<i32> = bodies.iter().flat_map(|(index, body)| body.range.clone().map(|_| *index)).collect();

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use fractum_scene::Scene;
+use fractum_scene::{PeriodicCell, Scene, into_periodic_box, periodic_cell_of};
 use fractum_vtk::PendingFile;
 
 use crate::frames::cracks::lost_bonds;
@@ -26,7 +26,11 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
     // Writing to a String cannot fail.
     let _ = write!(text, "{}\nProperties={PROPERTIES} Time=", present.len());
     push_shortest(&mut text, scene.clock.time);
-    let _ = writeln!(text, " Step={} pbc=\"F F F\"", scene.clock.step);
+    let _ = write!(text, " Step={}", scene.clock.step);
+    match periodic_cell_of(scene) {
+        Some(cell) => push_cell(&mut text, cell),
+        None => text.push_str(" pbc=\"F F F\"\n"),
+    }
     let lost = lost_bonds(all.len(), bonded.bodies().iter().flat_map(|body| body.cracks()));
     let mut bodies = bonded.bodies().iter();
     let mut body = bodies.next();
@@ -39,11 +43,12 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
         text.extend(name.chars().map(|c| if c.is_whitespace() { '_' } else { c }));
         let _ = write!(text, " {i}");
         let turn = all.orientation[i].coords;
+        let [beyond, faster] = into_periodic_box(scene, &all.position[i]);
         let vectors = |of: &fractum_math::Vec3| [of.x, of.y, of.z];
         let columns = [
-            &vectors(&all.position[i])[..],
+            &vectors(&(all.position[i] + beyond))[..],
             &[all.radius[i], all.mass[i]],
-            &vectors(&all.velocity[i]),
+            &vectors(&(all.velocity[i] + faster)),
             &vectors(&all.spin[i]),
             &[turn.x, turn.y, turn.z, turn.w],
             &vectors(&all.force[i]),
@@ -56,4 +61,25 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
         let _ = writeln!(text, " {}", lost[i]);
     }
     Some(PendingFile::of_text(text))
+}
+
+/// The box that repeats, by edges and corner, as OVITO reads them.
+fn push_cell(text: &mut String, cell: &PeriodicCell) {
+    let repeats = cell.repeats.map(|repeats| if repeats { "T" } else { "F" }).join(" ");
+    let _ = write!(text, " pbc=\"{repeats}\" Lattice=\"");
+    let (edges, corner) = (cell.least_oblique(), cell.corner);
+    for (index, value) in edges.iter().enumerate() {
+        if index > 0 {
+            text.push(' ');
+        }
+        push_shortest(text, *value);
+    }
+    text.push_str("\" Origin=\"");
+    for (index, value) in corner.iter().enumerate() {
+        if index > 0 {
+            text.push(' ');
+        }
+        push_shortest(text, *value);
+    }
+    text.push_str("\"\n");
 }

@@ -11,10 +11,10 @@ use super::{Curve, EnergyColumns};
 use crate::plot::{Axis, Chart, Level, Mark, Series, Style, stacked};
 
 /// One colour for each energy, the same in every report, in the order of the list of energies.
-const ENERGY_COLOURS: [&str; 25] = [
+const ENERGY_COLOURS: [&str; 26] = [
     "#111111", "#2166a5", "#2e8b57", "#5fb08a", "#86c5a5", "#aad8c0", "#b2303c", "#d6761c", "#7b5aa6", "#2a98a8",
     "#8a6d3b", "#6b7280", "#9ab53a", "#c06090", "#404080", "#e0b030", "#a0522d", "#708090", "#c0c020", "#004d40",
-    "#ff8a65", "#5d4037", "#90a4ae", "#7cb342", "#e91e63",
+    "#ff8a65", "#5d4037", "#90a4ae", "#7cb342", "#e91e63", "#3949ab",
 ];
 
 /// The colour of an energy by the name of its column.

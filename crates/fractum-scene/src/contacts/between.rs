@@ -1,7 +1,7 @@
 //! Force of contact between two named bodies, summed up for the probes that ask for it.
 
-use fractum_contact::Touch;
 use fractum_contact::law::{ContactLaw, Hertz, HertzMemory};
+use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
 use fractum_fem::Solid;
 use fractum_math::Vec3;
@@ -71,10 +71,11 @@ impl Contacts {
     /// surface may share their force: on a concave edge some of it is taken off again.
     pub fn of_particles(&self, particles: &Particles, mut visit: impl FnMut(ParticleContact)) {
         let body = |i: u32| ContactBody::Particles(self.body[i as usize] as usize);
-        for ([i, j], memory) in self.among.iter().flat_map(|among| among.memories_touching()) {
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        let spheres = Spheres { position, velocity, spin, radius };
+        for ([i, j], memory, apart) in self.among.iter().flat_map(|among| among.memories_touching(&spheres)) {
             let Some(law) = self.law_among(&particles.radius, &particles.mass, i, j) else { continue };
-            let [from, to] = [i, j].map(|k| particles.position[k as usize]);
-            let (apart, place) = (to - from, (from + to) * 0.5);
+            let place = position[i as usize] + apart * 0.5;
             let distance = apart.norm();
             let normal = if distance > 0.0 { apart / distance } else { Vec3::x() };
             let overlap = particles.radius[i as usize] + particles.radius[j as usize] - distance;

@@ -17,10 +17,10 @@ mod servo;
 mod solid_surface;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
-use fractum_contact::{SphereContacts, Spheres, Surface, SurfaceContacts, Touch};
+use fractum_contact::{PeriodicCell, SphereContacts, Spheres, Surface, SurfaceContacts, Touch};
 use fractum_dem::{ParticleSubdomain, Particles};
 use fractum_fem::Solid;
-use fractum_math::{HalfSteps, Vec3, Work};
+use fractum_math::{HalfSteps, Mat3, Vec3, Work};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
@@ -237,6 +237,32 @@ impl Contacts {
         2.0 * self.skin
     }
 
+    /// The same in a box that repeats, before the first step.
+    pub fn within(mut self, cell: PeriodicCell) -> Self {
+        self.among = self.among.map(|among| among.within(cell));
+        self
+    }
+
+    pub(crate) fn set_cell(&mut self, cell: &PeriodicCell) {
+        self.among.iter_mut().for_each(|among| among.set_cell(cell));
+    }
+
+    /// Least distance of opposite sides of a box that repeats at which its particles touch once only [m].
+    pub fn narrowest_box(&self) -> f64 {
+        2.0 * (2.0 * self.largest_radius + self.skin + self.reach_of(&self.pairs))
+    }
+
+    /// See [`SphereContacts::sums_through_box`].
+    pub(crate) fn sums_through_box(&self, particles: &Particles) -> Option<[Mat3; 2]> {
+        let Particles { position, velocity, spin, radius, .. } = particles;
+        self.among.as_ref()?.sums_through_box(&Spheres { position, velocity, spin, radius })
+    }
+
+    /// Contacts of particles with each other at the last step.
+    pub(crate) fn touching_among(&self) -> usize {
+        self.among.as_ref().map_or(0, |among| among.touching().count())
+    }
+
     /// Takes a particle that was not there at a place with [clearance](Contacts::clearance).
     pub(crate) fn admit_particle(&mut self, particle: u32, place: &Vec3, radius: f64) {
         self.among.iter_mut().for_each(|among| among.admit(particle, place));
@@ -284,7 +310,7 @@ impl Contacts {
     /// Contacts at the last step.
     pub(crate) fn touching(&self) -> usize {
         let ground = |contacts: &SurfaceContacts<Hertz>| contacts.touches().filter(|t| t.is_contact()).count();
-        self.among.as_ref().map_or(0, |among| among.touching().count())
+        self.touching_among()
             + self.on_tools.iter().map(|(contacts, _)| ground(contacts)).sum::<usize>()
             + self.solids.iter().map(|solid| ground(solid.contacts())).sum::<usize>()
             + self.node_contacts()

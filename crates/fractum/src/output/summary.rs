@@ -8,7 +8,7 @@ use fractum_case::model::{Case, Expect, ProbeKind};
 use fractum_fem::{BodyState, Solid, cracks, neighbours};
 use fractum_output::expectation::Expectation;
 use fractum_output::summary::{self, Status, Summary};
-use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, entered_of, passing_size};
+use fractum_scene::{BondedBody, Clock, CountKind, Fragment, Scene, entered_of, passing_size, periodic_state};
 use serde::Serialize;
 use xxhash_rust::xxh3::Xxh3;
 
@@ -121,6 +121,9 @@ pub(crate) fn state_hash(scene: &Scene) -> u128 {
     }
     if let Some(subcycling) = scene.subcycling_state() {
         bytes.extend(postcard::to_stdvec(&subcycling).unwrap_or_default());
+    }
+    if let Some(periodic) = periodic_state(scene) {
+        bytes.extend(postcard::to_stdvec(&periodic).unwrap_or_default());
     }
     xxhash_rust::xxh3::xxh3_128(&bytes)
 }

@@ -3,8 +3,8 @@
 use fractum_calibrate::crushing::Crushing;
 use fractum_calibrate::strength::Pulling;
 use fractum_case::model::{
-    BodyKind, Case, LooseSource, Material, Rate, RigidBody, RigidShape, ServoForce, Sizes, SolidBody, SolverKind,
-    Stream,
+    BodyKind, Case, LooseSource, Material, Periodic, Rate, RigidBody, RigidShape, ServoForce, Sizes, SolidBody,
+    SolverKind, Stream,
 };
 use fractum_dem::FractureCriterion as BondCriterion;
 use fractum_dem::criterion::{CriterionParameter, Level};
@@ -18,6 +18,24 @@ use fractum_prepare::{BondedReport, FoundStrengths, InterfaceReport, Joints, Ori
 use fractum_scene::Scene;
 
 use super::{Plan, rows};
+
+/// A box that repeats, and how it deforms.
+fn box_in_words(periodic: &Periodic) -> String {
+    const AXES: [char; 3] = ['x', 'y', 'z'];
+    let list = |of: Vec<String>| of.join(", ");
+    let axes = list((0..3).filter(|&k| periodic.axes[k]).map(|k| AXES[k].to_string()).collect());
+    let [x, y, z] = [0, 1, 2].map(|k| quantity(periodic.size.value[k], "m"));
+    let mut text = format!("periodic along {axes}, {x} by {y} by {z}");
+    if !periodic.rates.is_empty() {
+        let rates = periodic.rates.iter().map(|([i, j], _)| format!("{}{}", AXES[*i], AXES[*j])).collect();
+        text += &format!(", deforms by {}", list(rates));
+    }
+    if let Some(servo) = &periodic.servo {
+        let held = servo.stress.iter().map(|(axis, _)| format!("{0}{0}", AXES[*axis])).collect();
+        text += &format!(", holds the stress {} by at most {}", list(held), quantity(servo.rate, "1/s"));
+    }
+    text
+}
 
 impl Plan {
     pub(super) fn describe_bodies(
@@ -78,6 +96,9 @@ impl Plan {
             for (_, told) in reads.iter().filter(|(name, _)| *name == body.name.value) {
                 self.add("", told.clone());
             }
+        }
+        if let Some(periodic) = &case.periodic {
+            self.add("box", box_in_words(periodic));
         }
     }
 

@@ -1,0 +1,327 @@
+//! Loose particles in a box that repeats: how the box deforms, what its sides do, and its stress.
+//!
+//! A particle is one of its images and never leaps. Images differ by edges n of the box H in place, H n, and in velocity, Ḣ n. What the
+//! forces do on a particle and on its image differs by f · Ḣ n: that is the work of the box. Where Ḣ changes, the mean flow
+//! Ḣ H⁻¹ (x - x_c) about the centre of mass changes with it, so that all images of a particle feel the same; no momentum comes in.
+//!
+//! In the ledger kinetic energy is that of the motion against the mean flow. The work of the box is then V σ : L per time, with the stress
+//! of contacts and of this motion, whatever images stand for the particles.
+
+use fractum_contact::PeriodicCell;
+use fractum_dem::Particles;
+use fractum_math::{Mat3, Vec3, sphere_volume};
+use serde::{Deserialize, Serialize};
+
+use crate::clock::ThisStep;
+use crate::error::StepError;
+use crate::scene::Scene;
+use crate::time_function::TimeFunction;
+
+/// How a box that repeats deforms.
+#[derive(Clone, Default)]
+pub struct BoxStrain {
+    /// Rates of the components of the velocity gradient ∂v_i/∂x_j with i ≤ j [1/s].
+    pub rates: Vec<([usize; 2], TimeFunction)>,
+    /// Stress that the box holds by its rates along axes.
+    pub servos: Vec<BoxServo>,
+}
+
+/// A normal stress that a box holds by its rate along this axis.
+#[derive(Clone)]
+pub struct BoxServo {
+    /// Axis.
+    pub axis: usize,
+    /// Stress that is asked for, tension positive [Pa].
+    pub stress: TimeFunction,
+    /// Largest rate [1/s].
+    pub rate: f64,
+    /// Share of the stress that is missing where it begins to slow down.
+    pub slows_at: f64,
+}
+
+/// A box that repeats, with what it does.
+#[derive(Clone)]
+pub struct PeriodicBox {
+    strain: BoxStrain,
+    state: PeriodicState,
+}
+
+/// What changes in a box that repeats.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PeriodicState {
+    /// The box at tⁿ; the velocity of its edges is that of the half step before.
+    cell: PeriodicCell,
+    /// Its edges at the start [m].
+    start: Mat3,
+    /// Work on the particles as they stand, and that of the half step that has begun [J].
+    work: [f64; 2],
+    /// Kinetic energy that the mean flow adds to that of the particles as they stand, when last measured [J].
+    streaming: f64,
+    /// Kinetic energy of the mean flow in the box, when last measured [J].
+    flow: f64,
+    /// Stress when last measured, tension positive [Pa].
+    stress: Mat3,
+    /// The part of it that motion against the mean flow has [Pa].
+    kinetic_stress: Mat3,
+}
+
+/// What a probe measures in a box that repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BoxMeasure {
+    /// Stress of contacts and of motion against the mean flow, tension positive [Pa].
+    Stress([usize; 2]),
+    /// The part of it that motion has [Pa].
+    KineticStress([usize; 2]),
+    /// Mean pressure [Pa].
+    Pressure,
+    /// Volume of the particles over that of the box.
+    SolidFraction,
+    /// Contacts per particle.
+    Coordination,
+    /// Volume of the box [m³].
+    Volume,
+    /// Component of the deformation since the start: of length along an axis, or shear ∂x_i/∂X_j.
+    Strain([usize; 2]),
+}
+
+/// A box at rest with edges along the axes.
+///
+/// - `corner`, `size` [m]; `repeats`: along which axes
+pub fn periodic_cell(corner: Vec3, size: &Vec3, repeats: [bool; 3]) -> PeriodicCell {
+    PeriodicCell { corner, edges: Mat3::from_diagonal(size), velocity: Mat3::zeros(), repeats }
+}
+
+/// The same scene in a box that repeats, before its first step and with contacts [within](crate::Contacts::within) it.
+pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain) -> Scene {
+    let state = PeriodicState {
+        cell,
+        start: cell.edges,
+        work: [0.0; 2],
+        streaming: 0.0,
+        flow: 0.0,
+        stress: Mat3::zeros(),
+        kinetic_stress: Mat3::zeros(),
+    };
+    scene.optional.periodic = Some(Box::new(PeriodicBox { strain, state }));
+    scene
+}
+
+/// The box of a scene that repeats, as it is now; none where nothing does.
+pub fn periodic_cell_of(scene: &Scene) -> Option<&PeriodicCell> {
+    scene.optional.periodic.as_ref().map(|own| &own.state.cell)
+}
+
+/// Where a particle is within the box that repeats: what its image there has beyond its own place and velocity [m, m/s].
+pub fn into_periodic_box(scene: &Scene, place: &Vec3) -> [Vec3; 2] {
+    periodic_cell_of(scene).map_or([Vec3::zeros(); 2], |cell| cell.into_box(place))
+}
+
+/// What changes in the box that repeats, for a checkpoint.
+pub fn periodic_state(scene: &Scene) -> Option<PeriodicState> {
+    scene.optional.periodic.as_ref().map(|own| own.state.clone())
+}
+
+/// Puts it back, after the state of the scene.
+pub fn restore_periodic(scene: &mut Scene, state: Option<PeriodicState>) {
+    if let (Some(own), Some(state)) = (&mut scene.optional.periodic, state) {
+        scene.contacts.set_cell(&state.cell);
+        own.state = state;
+    }
+}
+
+/// What a probe shows of the box that repeats, when last measured; not a number without one.
+pub fn measure_periodic_box(scene: &Scene, measure: BoxMeasure) -> f64 {
+    let Some(own) = &scene.optional.periodic else { return f64::NAN };
+    let PeriodicState { cell, start, stress, kinetic_stress, .. } = &own.state;
+    match measure {
+        BoxMeasure::Stress([i, j]) => 0.5 * (stress[(i, j)] + stress[(j, i)]),
+        BoxMeasure::KineticStress([i, j]) => kinetic_stress[(i, j)],
+        BoxMeasure::Pressure => -stress.trace() / 3.0,
+        BoxMeasure::SolidFraction => {
+            let radii = scene.bonded.particles.radius.iter();
+            radii.map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
+        }
+        BoxMeasure::Coordination => 2.0 * scene.contacts.touching_among() as f64 / scene.bonded.particles.len() as f64,
+        BoxMeasure::Volume => cell.volume(),
+        BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
+    }
+}
+
+/// Mean motion of the particles.
+struct MeanMotion {
+    mass: f64,
+    /// Centre of mass [m].
+    centre: Vec3,
+    /// Its velocity [m/s].
+    velocity: Vec3,
+}
+
+impl MeanMotion {
+    fn of(particles: &Particles) -> Self {
+        let Particles { position, velocity, mass, .. } = particles;
+        let (mut sum, mut places, mut momentum) = (0.0, Vec3::zeros(), Vec3::zeros());
+        for ((x, v), m) in position.iter().zip(velocity).zip(mass) {
+            sum += m;
+            places += x * *m;
+            momentum += v * *m;
+        }
+        MeanMotion { mass: sum, centre: places / sum, velocity: momentum / sum }
+    }
+}
+
+/// Velocity gradient that is asked for at a time, of the axes without a servo [1/s].
+fn gradient(strain: &BoxStrain, time: f64) -> Mat3 {
+    let mut gradient = Mat3::zeros();
+    for ([i, j], rate) in &strain.rates {
+        gradient[(*i, *j)] = rate(time, &Vec3::zeros());
+    }
+    gradient
+}
+
+/// Sets the box and the mean flow in motion before the first step.
+pub(crate) fn start_box(scene: &mut Scene, step: &ThisStep) {
+    let Scene { optional, bonded, contacts, .. } = scene;
+    let Some(own) = optional.periodic.as_mut().filter(|_| step.is_first) else { return };
+    let cell = &mut own.state.cell;
+    let after = cell.velocity_under(&gradient(&own.strain, step.time + 0.5 * step.dt_after), step.dt_after);
+    let change = PeriodicCell { velocity: after - cell.velocity, ..*cell }.velocity_gradient();
+    cell.velocity = after;
+    let mean = MeanMotion::of(&bonded.particles);
+    let Particles { position, velocity, .. } = &mut bonded.particles;
+    velocity.iter_mut().zip(position).for_each(|(v, x)| *v += change * (*x - mean.centre));
+    contacts.set_cell(cell);
+}
+
+/// Finds the stress of the box at tⁿ, has it deform until tⁿ⁺¹, and changes the mean flow with it; between the forces of tⁿ and the kick.
+///
+/// # Errors
+/// [`StepError::BoxTooNarrow`].
+pub(crate) fn deform_box(scene: &mut Scene, step: &ThisStep) -> Result<(), StepError> {
+    let Some(mut own) = scene.optional.periodic.take() else { return Ok(()) };
+    let outcome = own.deform(scene, step);
+    scene.optional.periodic = Some(own);
+    outcome
+}
+
+/// Books what the sides do in the half step that has begun.
+pub(crate) fn book_box(scene: &mut Scene) {
+    if let Some(own) = &mut scene.optional.periodic {
+        let [work, after] = &mut own.state.work;
+        *work += std::mem::take(after);
+    }
+}
+
+/// Work of the box; the kinetic energy that the particles as they stand have beyond that against the mean flow; and that of the mean flow in
+/// the box, ∫ ½ ρ |L x|² dV about its middle [J].
+pub(crate) fn box_energies(own: Option<&PeriodicBox>) -> [f64; 3] {
+    let of = |PeriodicState { work, streaming, flow, .. }: &PeriodicState| [work[0] - streaming, *streaming, *flow];
+    own.map_or([0.0; 3], |own| of(&own.state))
+}
+
+impl std::fmt::Debug for PeriodicBox {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PeriodicBox").field("state", &self.state).finish_non_exhaustive()
+    }
+}
+
+impl PeriodicBox {
+    fn deform(&mut self, scene: &mut Scene, step: &ThisStep) -> Result<(), StepError> {
+        let ThisStep { is_first, measure, dt_before, dt_after, .. } = *step;
+        let Scene { bonded, contacts, .. } = scene;
+        let PeriodicBox { strain, state } = self;
+        let particles = &mut bonded.particles;
+        let deforms = !strain.rates.is_empty() || !strain.servos.is_empty();
+        if !deforms && !measure {
+            return Ok(());
+        }
+        let [through, virial] = contacts.sums_through_box(particles).unwrap_or_default();
+        if !is_first {
+            state.work[0] -= 0.5 * dt_before * through.dot(&state.cell.velocity);
+        }
+        let mean = MeanMotion::of(particles);
+        if measure || !strain.servos.is_empty() {
+            let volume = state.cell.volume();
+            state.kinetic_stress = kinetic(particles, &mean, &state.cell, dt_before) / -volume;
+            state.stress = state.kinetic_stress - virial / volume;
+        }
+        let mut gradient = gradient(strain, step.time + 0.5 * dt_after);
+        for servo in &strain.servos {
+            gradient[(servo.axis, servo.axis)] = servo.rate(state, &mean, step);
+        }
+        let after = if is_first { state.cell.velocity } else { state.cell.velocity_under(&gradient, dt_after) };
+        if after != state.cell.velocity {
+            let change = PeriodicCell { velocity: after - state.cell.velocity, ..state.cell }.velocity_gradient();
+            state.work[0] += change_flow(particles, &mean, &change, dt_before);
+            state.cell.velocity = after;
+        }
+        if measure {
+            state.streaming = streaming(particles, &mean, &state.cell.velocity_gradient(), dt_before);
+            state.flow = mean.mass / 24.0 * state.cell.velocity.norm_squared();
+            if is_first {
+                state.work[0] = state.streaming;
+            }
+        }
+        state.work[1] = -0.5 * dt_after * through.dot(&after);
+        if after != Mat3::zeros() {
+            state.cell.edges += after * dt_after;
+        }
+        contacts.set_cell(&state.cell);
+        let (narrowest, needed) = (state.cell.narrowest(), contacts.narrowest_box());
+        // A box that is no number is left to the balance.
+        if narrowest < needed {
+            return Err(StepError::BoxTooNarrow { step: scene.clock.step, time: step.time, narrowest, needed });
+        }
+        Ok(())
+    }
+}
+
+impl BoxServo {
+    /// Rate of the half step that follows [1/s]: that of a [`Servo`](crate::Servo) that presses on a side, with the mass of all particles.
+    fn rate(&self, state: &PeriodicState, mean: &MeanMotion, step: &ThisStep) -> f64 {
+        let (cell, k) = (&state.cell, self.axis);
+        let length = cell.edges[(k, k)];
+        let (area, fastest) = (cell.volume() / length, self.rate * length);
+        let wanted = (self.stress)(step.time, &Vec3::zeros());
+        let dt = 0.5 * (step.dt_before + step.dt_after);
+        let pushed = mean.mass * cell.velocity[(k, k)] + dt * area * (wanted - state.stress[(k, k)]);
+        let resistance = mean.mass + dt * self.slows_at * wanted.abs() * area / fastest;
+        (pushed / resistance).clamp(-fastest, fastest) / length
+    }
+}
+
+/// Velocity of a particle at tⁿ, of which it has that of the half step before [m/s].
+fn velocity_now(particles: &Particles, i: usize, dt_before: f64) -> Vec3 {
+    particles.velocity[i] + particles.force[i] * (0.5 * dt_before / particles.mass[i])
+}
+
+/// Σ m c ⊗ c of the velocities against the mean flow [J].
+fn kinetic(particles: &Particles, mean: &MeanMotion, cell: &PeriodicCell, dt_before: f64) -> Mat3 {
+    let gradient = cell.velocity_gradient();
+    let mut sum = Mat3::zeros();
+    for i in 0..particles.len() {
+        let flow = mean.velocity + gradient * (particles.position[i] - mean.centre);
+        let own = velocity_now(particles, i, dt_before) - flow;
+        sum += own * own.transpose() * particles.mass[i];
+    }
+    sum
+}
+
+/// Changes the mean flow by a velocity gradient [1/s]; returns the energy that this brings [J]: as the scheme sees it, that of ½ m v · (v + Δt a).
+fn change_flow(particles: &mut Particles, mean: &MeanMotion, change: &Mat3, dt_before: f64) -> f64 {
+    let mut energy = 0.0;
+    for i in 0..particles.len() {
+        let kick = change * (particles.position[i] - mean.centre);
+        energy += particles.mass[i] * kick.dot(&(velocity_now(particles, i, dt_before) + kick * 0.5));
+        particles.velocity[i] += kick;
+    }
+    energy
+}
+
+/// Kinetic energy that the particles as they stand have beyond that against the mean flow [J].
+fn streaming(particles: &Particles, mean: &MeanMotion, gradient: &Mat3, dt_before: f64) -> f64 {
+    let of = |i: usize| {
+        let flow = gradient * (particles.position[i] - mean.centre);
+        particles.mass[i] * flow.dot(&(velocity_now(particles, i, dt_before) - flow * 0.5))
+    };
+    (0..particles.len()).map(of).sum()
+}
