@@ -84,6 +84,7 @@ fn a_chain_breaks_at_the_strength_of_its_beams() {
         pairs: &pairs,
         radius: &[0.5; 4],
         strength_factors: &[],
+        to_wall: &[],
         fraction: 0.5,
         volume: 3.0,
         displacement: 1e-3,
