@@ -54,6 +54,7 @@ fn pull_scattered(
         pairs: &pairs,
         radius: &radius,
         strength_factors,
+        to_wall: &[],
         fraction: 0.52,
         volume: n as f64,
         displacement: 1e-3,
