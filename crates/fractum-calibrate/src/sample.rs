@@ -15,6 +15,8 @@ pub struct Sample {
     pub convention: Convention,
     /// Factors on the stiffness of the bonds; none where all are 1.
     pub shares: Vec<f64>,
+    /// From each particle to the wall at which its stress is taken; empty where stress is not taken at walls [m].
+    pub to_wall: Vec<Vec3>,
     /// The lattice of the bonds.
     pub lattice: Lattice,
     /// Mean radius [m].
@@ -54,7 +56,16 @@ impl Sample {
         let section = BeamSection::new(1.0, 0.5 * mean_radius).map_err(DemError::from)?;
         let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;
         let fraction = interior_fraction(&packing).unwrap_or(RANDOM_CLOSE);
-        Ok(Sample { packing, network, convention, shares: Vec::new(), lattice, mean_radius, fraction })
+        Ok(Sample {
+            packing,
+            network,
+            convention,
+            shares: Vec::new(),
+            to_wall: Vec::new(),
+            lattice,
+            mean_radius,
+            fraction,
+        })
     }
 
     /// Makes bonds stiffer by a share for each of their particles that touches a wall. Bonds end at the centres of the outer particles,
@@ -77,6 +88,12 @@ impl Sample {
                 Lattice::with_shares(&packing.position, &network.pairs, shares, lattice.section(), *mean_radius)?;
         }
         Ok(self)
+    }
+
+    /// Lets a criterion take the stress of particles at walls at these; see [`fractum_dem::FailureSearch::read_at_walls`].
+    pub fn read_at_walls(mut self) -> Self {
+        self.to_wall = self.packing.to_walls();
+        self
     }
 
     /// Sets the beams of all bonds.

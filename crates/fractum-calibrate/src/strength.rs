@@ -72,6 +72,9 @@ pub struct BondKind {
     pub dispersion: f64,
     /// See [`Sample::stiffen_walls`].
     pub wall_stiffening: f64,
+    /// See [`Sample::read_at_walls`].
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub at_walls: bool,
 }
 
 impl BondKind {
@@ -79,7 +82,8 @@ impl BondKind {
     pub(crate) fn sample(&self, spec: PackSpec) -> Result<Sample, CalibrateError> {
         let packing = pack(&PackSpec { dispersion: self.dispersion, ..spec })?;
         let sample = Sample::new(packing, self.coordination, self.convention)?;
-        let mut sample = sample.stiffen_walls(self.wall_stiffening)?;
+        let sample = sample.stiffen_walls(self.wall_stiffening)?;
+        let mut sample = if self.at_walls { sample.read_at_walls() } else { sample };
         sample.set_micro(self.micro)?;
         Ok(sample)
     }

@@ -106,18 +106,30 @@ impl Packing {
     /// For each particle, how far it is from touching exactly the walls that it touched at the end of compaction [m]: release
     /// of the walls leaves their particles up to some hundredths of a radius off them. Zero for the others.
     pub fn shift_to_walls(&self) -> Vec<Vec3> {
-        let mut shift = vec![Vec3::zeros(); self.len()];
+        self.way_to_walls(|depth, radius| depth - radius)
+    }
+
+    /// From each centre to the wall that it touched, to the edge or corner of several; zero for the others [m].
+    pub fn to_walls(&self) -> Vec<Vec3> {
+        self.way_to_walls(|depth, _| depth)
+    }
+
+    /// The way of each particle towards the walls that it touched.
+    ///
+    /// - `length`: of the way to one of them, from the depth of the centre below it and the radius
+    fn way_to_walls(&self, length: impl Fn(f64, f64) -> f64) -> Vec<Vec3> {
+        let mut way = vec![Vec3::zeros(); self.len()];
         for (wall, (_, set)) in self.walls.iter().enumerate() {
             for &i in set {
                 let i = i as usize;
                 self.domain.walls_at(&self.position[i], |other, depth, inward| {
                     if other == wall {
-                        shift[i] -= inward * (depth - self.radius[i]);
+                        way[i] -= inward * length(depth, self.radius[i]);
                     }
                 });
             }
         }
-        shift
+        way
     }
 
     /// For each particle, whether it touched a wall.
@@ -307,13 +319,16 @@ mod tests {
     #[test]
     fn shifted_particles_touch_their_walls_exactly() {
         let packing = small();
-        let shift = packing.shift_to_walls();
+        let (shift, to_walls) = (packing.shift_to_walls(), packing.to_walls());
         for (wall, (name, set)) in packing.walls.iter().enumerate() {
             for &i in set {
                 let i = i as usize;
                 let place = packing.position[i] + shift[i];
                 packing.domain.walls_at(&place, |other, depth, _| {
                     assert!(other != wall || (depth - packing.radius[i]).abs() < 1e-12, "{name} {depth}");
+                });
+                packing.domain.walls_at(&(packing.position[i] + to_walls[i]), |other, depth, _| {
+                    assert!(other != wall || depth.abs() < 1e-12, "{name} {depth}");
                 });
             }
         }

@@ -255,6 +255,8 @@ pub struct BondStrength {
     pub tensile_strength: Option<f64>,
     /// Strength in compression as it is given [Pa]; `None` = the criterion has its usual one, if any.
     pub compressive_strength: Option<f64>,
+    /// Whether the stress of particles at walls is that of the wall.
+    pub at_walls: bool,
 }
 
 /// Regions that a cloud can fill.

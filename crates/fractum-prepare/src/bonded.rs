@@ -195,6 +195,7 @@ impl Maker<'_> {
             faces,
             volume,
             strength_factors: Vec::new(),
+            to_wall: if found.at_walls { made.sample.packing.to_walls() } else { Vec::new() },
         };
         let body = PreparedBody {
             fraction,

@@ -94,6 +94,18 @@ fn a_bonded_body_breaks_with_the_same_bits_on_any_threads_and_after_a_checkpoint
 }
 
 #[test]
+fn stress_at_walls_breaks_bonds_with_the_same_bits_on_any_threads_and_after_a_checkpoint() {
+    let place = Workplace::new(&BAR.replace("\"60 MPa\"", "\"60 MPa\"\nat_walls = true"));
+    let one = run(&place, "one", "1");
+    let told = fs::read_to_string(place.path("one/run.log")).unwrap();
+    assert!(told.contains("at walls the stress of the wall"), "{told}");
+    assert!(one["counts"]["broken_bonds"].as_u64().unwrap() > 100, "{}", one["counts"]);
+    assert!(one["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", one["energy"]);
+    assert_eq!(run(&place, "2", "2")["state_hash"], one["state_hash"]);
+    assert_eq!(resumed(&place, "2")["state_hash"], one["state_hash"]);
+}
+
+#[test]
 fn a_body_that_holds_says_how_close_it_came() {
     let place = Workplace::new(&BAR.replace("60 MPa", "6 GPa"));
     let ended = place.fractum(&["run", "case.toml", "-o", "out"]);
@@ -112,6 +124,7 @@ fn criteria_take_only_keys_that_belong_to_them() {
         ("criterion = \"hydrostatic\"\ncompressive_strength = \"1 GPa\"", "fracture.compressive_strength", "criterion"),
         ("moments = \"largest\"", "materials.glass.fracture.moments", "with this criterion"),
         ("level = 3", "materials.glass.fracture.level", "0, 1 or 2"),
+        ("criterion = \"beam\"\nat_walls = true", "materials.glass.fracture.at_walls", "on single beams"),
         ("compressive_strength = \"10 MPa\"", "fracture.compressive_strength", "more than the tensile strength"),
         ("tensile_strength = \"10 MPa\"", "fracture.tensile_strength", "beside criterion_strength"),
         ("criterion = \"principle\"", "materials.glass.fracture.criterion", "principal"),

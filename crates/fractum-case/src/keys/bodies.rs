@@ -101,6 +101,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("materials.NAME.fracture.compressive_strength", K::Quantity(D::PRESSURE), "none with principal, else 10 times that in tension", "In compression, above that in tension: with mohr-coulomb that of the material, for which three prisms are crushed in motion; with principal and drucker-prager that of the criterion, times the factor found in tension; with criterion_strength that of the criterion"),
     key("materials.NAME.fracture.friction_angle", K::Angle, "\"35 deg\"", "mohr-coulomb only: angle of internal friction, from 0 to below 90 deg"),
     key("materials.NAME.fracture.level", K::Integer, "1", "Over which particles stress is taken: 0 the particle, 1 those bonded to it too, 2 their partners too; not for beam and hydrostatic"),
+    key("materials.NAME.fracture.at_walls", K::Flag, "false", "Stress of particles at a wall of the body: true, that at the wall, by the gradient of stress over the particles up to two bonds away, at most 1.5 times the ratio to strength of their neighbourhood; false, that of their neighbourhood, whose middle lies inside. Strengths are calibrated the same way; not for beam, and not beside replaces"),
     key("materials.NAME.fracture.moments", K::Choice(names::<EndMoments>), "\"mean\"", "beam only: which bending moment counts"),
     key("materials.NAME.fracture.scatter", K::Table, "", "Random scatter of the strength of particles by Weibull's flaws in the volume"),
     key("materials.NAME.fracture.scatter.modulus", K::Quantity(D::NONE), "required", "Weibull modulus, > 0"),

@@ -70,6 +70,15 @@ pub(super) fn bonded(table: &Table<'_>, material: Option<usize>, here: Option<&M
         }
         _ => table.quantity("wall_stiffening").not_negative().or(0.0),
     };
+    if let (Some(Some(_)), Some(own)) = (&replaces, here.and_then(|here| here.fracture.as_ref()))
+        && own.value.strength.at_walls
+    {
+        let note = Diagnostic::error(
+            &own.place,
+            ".at_walls does not go with a body that replaces: its walls are tied to the solid",
+        );
+        table.reader.note(note.remedy("leave at_walls out, or give this body a material of its own"));
+    }
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
     Some(BondedBody {

@@ -27,7 +27,7 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
         table.quantity("tensile_strength").positive().usual(&STRENGTH).required()
     };
     let Some(kind) = kind else {
-        table.pass_over(&["compressive_strength", "friction_angle", "level", "moments", "scatter"]);
+        table.pass_over(&["compressive_strength", "friction_angle", "level", "moments", "at_walls", "scatter"]);
         table.finish("here");
         return None;
     };
@@ -53,6 +53,11 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
     if takes(CriterionParameter::Moments, "moments") {
         numbers.moments = table.choice("moments").or(EndMoments::Mean);
     }
+    let of_beams = kind.takes(CriterionParameter::Moments);
+    if of_beams {
+        table.refuse("at_walls", "on single beams: choose a criterion of the stress of particles");
+    }
+    let at_walls = !of_beams && table.flag("at_walls").or(false);
     check_slip(&table, kind, &numbers);
     let scatter = table.table("scatter").map(super::scatter::of_particles);
     table.finish("here");
@@ -62,6 +67,7 @@ pub(super) fn fracture(table: Table<'_>) -> Option<BondFailure> {
             criterion: (kind.make)(&numbers),
             tensile_strength: (!own).then_some(tensile_strength),
             compressive_strength: numbers.compressive_strength,
+            at_walls,
         },
         scatter: scatter.map_or(Some(None), |scatter| scatter.map(Some))?,
     })

@@ -293,6 +293,7 @@ end = "1 ms"
             faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
             volume,
             strength_factors: Vec::new(),
+            to_wall: Vec::new(),
         };
         let made = PreparedBody {
             particles: Particles::at_rest(position.clone(), vec![1e-3; 512], 1e-2).unwrap(),

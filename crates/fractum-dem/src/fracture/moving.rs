@@ -137,6 +137,14 @@ impl Fracture {
         self
     }
 
+    /// The same with the stress of particles at walls taken there, see [`FailureSearch::read_at_walls`].
+    pub fn reading_at_walls(mut self, to_wall: &[Vec3]) -> Self {
+        if let Some(search) = &mut self.search {
+            search.read_at_walls(&self.reference, to_wall, &self.graph);
+        }
+        self
+    }
+
     pub(super) fn with_search(
         graph: BondGraph,
         search: Option<FailureSearch>,

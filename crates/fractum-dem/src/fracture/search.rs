@@ -3,6 +3,7 @@
 use fractum_math::{Sym3, Vec3, sphere_volume};
 use fractum_parallel::gather_named;
 
+use super::at_walls::{AtWalls, MOST};
 use super::criterion::{
     BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds, weakness_of,
 };
@@ -57,6 +58,8 @@ pub struct FailureSearch {
     weakness: Vec<f64>,
     /// The largest of them.
     weakest: f64,
+    /// What takes the stress of particles at walls to these; none where nothing does.
+    at_walls: Option<AtWalls>,
     /// Members of each neighbourhood, for level 2 only.
     members: Vec<Vec<u32>>,
     virials: Vec<Sym3>,
@@ -113,6 +116,7 @@ impl FailureSearch {
             fraction,
             weakness: Vec::new(),
             weakest: 1.0,
+            at_walls: None,
             members: vec![Vec::new(); listed],
             virials: vec![Sym3::ZERO; stressed],
             virial_bounds: vec![[0.0; 2]; stressed],
@@ -138,6 +142,18 @@ impl FailureSearch {
             _ => of_particles.collect(),
         };
         self.weakest = self.weakness.iter().copied().reduce(f64::max).unwrap_or(1.0);
+    }
+
+    /// Takes the stress of particles at walls at these, by its gradient over what is up to two bonds away; without
+    /// effect on a criterion of single bonds.
+    ///
+    /// - `position`: centres without load [m]
+    /// - `to_wall`: from each of them to the wall that it touches, zero off the walls; empty to leave all as it is [m]
+    pub fn read_at_walls(&mut self, position: &[Vec3], to_wall: &[Vec3], graph: &BondGraph) {
+        if !to_wall.is_empty() && self.criterion.level().is_some() {
+            self.at_walls = Some(AtWalls::new(position, to_wall));
+            self.gather_all(graph);
+        }
     }
 
     /// Members and volumes of all neighbourhoods anew.
@@ -185,11 +201,15 @@ impl FailureSearch {
             _ => {}
         }
         self.inverse[i] = self.fraction / space;
+        if let (Some(at_walls), Some(level)) = (&mut self.at_walls, self.criterion.level()) {
+            at_walls.gather(i, graph, &self.volume, self.fraction, level);
+        }
     }
 
     /// Leaves the sites to ranks: particles to those that move them, bonds to those that compute them.
     pub(super) fn distribute(&mut self, part: &ParticleSubdomain, bonds: &Bonds, graph: &BondGraph) {
         let rings = match self.criterion.level() {
+            Some(_) if self.at_walls.is_some() => 2,
             None | Some(Level::Own) => 0,
             Some(Level::Neighbours) => 1,
             Some(Level::Second) => 2,
@@ -215,8 +235,8 @@ impl FailureSearch {
     pub fn bond_broken(&mut self, bond: u32, graph: &BondGraph) {
         let ends = graph.pairs()[bond as usize].map(|i| i as usize);
         match self.criterion.level() {
-            Some(Level::Neighbours) => ends.into_iter().for_each(|i| self.gather(i, graph)),
-            Some(Level::Second) => {
+            Some(Level::Neighbours) if self.at_walls.is_none() => ends.into_iter().for_each(|i| self.gather(i, graph)),
+            Some(level) if level == Level::Second || self.at_walls.is_some() => {
                 let mut near: Vec<usize> = ends.to_vec();
                 ends.iter().for_each(|&i| near.extend(graph.neighbours(i).map(|h| h.other as usize)));
                 near.sort_unstable();
@@ -244,10 +264,11 @@ impl FailureSearch {
             part,
             weakness,
             weakest,
+            at_walls,
             ..
         } = self;
-        // Before the strength of each site is looked at.
-        let any_limit = limit / *weakest;
+        // Before the strength of each site is looked at, and where it is.
+        let any_limit = limit / (*weakest * most(at_walls));
         self.overloaded.clear();
         self.worst = None;
         match criterion.rule() {
@@ -269,7 +290,15 @@ impl FailureSearch {
                     any |= part.exchange_virials(virials, reaching);
                 }
                 if any {
-                    let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
+                    let around = Neighbourhoods {
+                        graph,
+                        members,
+                        inverse,
+                        virials,
+                        weakness,
+                        at_walls: at_walls.as_ref(),
+                        first: own.start,
+                    };
                     let found = criterion.search_among(&around, reaching, &mut stress[own], limit);
                     found.iter().for_each(|block| self.overloaded.extend_from_slice(&block.overloaded));
                 }
@@ -280,7 +309,7 @@ impl FailureSearch {
     /// Whether [`Bonds::virial_bounds`] allow a site a ratio of at least `limit`: cheaper still, without a tensor, and a coarser bound.
     pub fn virial_bounds_may_fail(&mut self, bonds: &Bonds, limit: f64) -> bool {
         let Rule::Stress(criterion) = self.criterion.rule() else { return true };
-        let limit = limit / self.weakest;
+        let limit = limit / (self.weakest * most(&self.at_walls));
         bonds.virial_bounds(&mut self.virial_bounds);
         let own = self.part.as_ref().map_or(0..self.volume.len(), |part| part.particles());
         let own_reach =
@@ -301,10 +330,18 @@ impl FailureSearch {
             }
             Rule::Stress(criterion) => {
                 body.virials(&mut self.virials);
-                let FailureSearch { members, inverse, virials, weakness, stress, part, reaching, .. } = self;
+                let FailureSearch { members, inverse, virials, weakness, stress, part, reaching, at_walls, .. } = self;
                 let own = part.as_ref().map_or(0..virials.len(), |part| part.particles());
                 part.iter_mut().for_each(|part| _ = part.exchange_virials(virials, reaching));
-                let around = Neighbourhoods { graph, members, inverse, virials, weakness, first: own.start };
+                let around = Neighbourhoods {
+                    graph,
+                    members,
+                    inverse,
+                    virials,
+                    weakness,
+                    at_walls: at_walls.as_ref(),
+                    first: own.start,
+                };
                 criterion.search(&around, &mut stress[own], limit)
             }
         };
@@ -349,4 +386,9 @@ impl FailureSearch {
             }
         }
     }
+}
+
+/// The most that a site's ratio may be over that of its neighbourhood.
+fn most(at_walls: &Option<AtWalls>) -> f64 {
+    if at_walls.is_some() { MOST } else { 1.0 }
 }

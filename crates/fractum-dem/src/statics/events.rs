@@ -3,6 +3,7 @@
 mod constant;
 mod state;
 
+use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use constant::Constant;
@@ -46,6 +47,8 @@ pub struct Breaking<'a> {
     pub radius: &'a [f64],
     /// Factors on the strength of the particles, > 0; none where all have the same.
     pub strength_factors: &'a [f64],
+    /// See [`FailureSearch::read_at_walls`]; empty where stress is not taken at walls [m].
+    pub to_wall: &'a [Vec3],
     /// Volume fraction of the interior of the packing.
     pub fraction: f64,
     /// Volume of the body, that the facets of its bonds share [m³].
@@ -179,6 +182,7 @@ impl QuasiStatic {
         let graph = BondGraph::new(lattice.len(), what.pairs);
         let mut search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
         search.set_strength_factors(what.strength_factors, &graph);
+        search.read_at_walls(lattice.position(), what.to_wall, &graph);
         let area = facet_area(what.volume, lattice.position(), what.pairs);
         let constant = match constant {
             [] => None,

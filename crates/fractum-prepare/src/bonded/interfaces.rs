@@ -83,7 +83,7 @@ fn with_interfaces(
     let shares = shares(sample, own.area);
     let mean_share = shares.iter().sum::<f64>() / shares.len().max(1) as f64;
     let faces = CrackFaces { friction: own.law.friction, damping_ratio: own.law.damping_ratio };
-    let fracture = BondFracture { criterion: None, faces, volume, strength_factors: Vec::new() };
+    let fracture = BondFracture { criterion: None, faces, volume, strength_factors: Vec::new(), to_wall: Vec::new() };
     let body = PreparedBody {
         particles,
         pairs: sample.network.pairs.clone(),

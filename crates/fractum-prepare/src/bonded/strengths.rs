@@ -17,6 +17,8 @@ use crate::cache::key;
 pub struct FoundStrengths {
     /// The criterion.
     pub criterion: FractureCriterion,
+    /// Whether the stress of particles at walls is that of the wall.
+    pub at_walls: bool,
     /// Where its strengths came from.
     pub origin: Origin,
     /// What was found in tension, with the strength of bodies [Pa]; none where the strengths are given.
@@ -53,13 +55,13 @@ impl Maker<'_> {
         micro: Micro,
         coordination: f64,
     ) -> Result<FoundStrengths, Fault> {
-        let criterion = strength.criterion;
+        let (criterion, at_walls) = (strength.criterion, strength.at_walls);
         let Some(asked) = strength.tensile_strength else {
-            return Ok(FoundStrengths { criterion, origin: Origin::Given, pulling: None, crushing: None });
+            return Ok(FoundStrengths { criterion, at_walls, origin: Origin::Given, pulling: None, crushing: None });
         };
         let (convention, dispersion) = (self.asked.convention, sample.packing.dispersion);
         let wall_stiffening = self.asked.wall_stiffening;
-        let bonds = BondKind { micro, coordination, convention, dispersion, wall_stiffening };
+        let bonds = BondKind { micro, coordination, convention, dispersion, wall_stiffening, at_walls };
         let pulling_key = PullingKey { bonds, asked, criterion };
         let (pulled, origin) = self.kept("strength", key(&pulling_key), || {
             self.tell("three boxes of such bonds are broken in tension to find the strength of the criterion");
@@ -68,7 +70,7 @@ impl Maker<'_> {
         let scaled = criterion.scaled(pulled.factor);
         let pulled = Some((asked, pulled));
         let Some(asked) = strength.compressive_strength.filter(|_| criterion.kind().slips) else {
-            return Ok(FoundStrengths { criterion: scaled, origin, pulling: pulled, crushing: None });
+            return Ok(FoundStrengths { criterion: scaled, at_walls, origin, pulling: pulled, crushing: None });
         };
         let use_of_body = Use { at_rest: self.asked.at_rest, faces: self.material().faces };
         let crushing_key = CrushingKey { pulling: pulling_key, asked, use_of_body };
@@ -81,7 +83,7 @@ impl Maker<'_> {
         let (found, origin) =
             self.kept("crushing", key(&crushing_key), || crushing(&bonds, asked, scaled, use_of_body, &tell))?;
         let criterion = scaled.with_chains(found.chains).with_compressive_strength(found.strength);
-        Ok(FoundStrengths { criterion, origin, pulling: pulled, crushing: Some(found) })
+        Ok(FoundStrengths { criterion, at_walls, origin, pulling: pulled, crushing: Some(found) })
     }
 
     /// Tells where bodies of such bonds cannot have the strength in compression that is asked.

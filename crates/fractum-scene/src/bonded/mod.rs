@@ -181,9 +181,9 @@ impl Bonded {
                 plan.take_place(range.clone(), all.particles.len());
             }
             let fracture = match &plan {
-                Some(BondFracture { criterion: Some(criterion), faces, volume, strength_factors }) => {
+                Some(BondFracture { criterion: Some(criterion), faces, volume, strength_factors, to_wall }) => {
                     let fracture = Fracture::new(&bonds, &all.particles, *criterion, *faces, fraction, *volume)?;
-                    Some(fracture.with_strength_factors(strength_factors))
+                    Some(fracture.with_strength_factors(strength_factors).reading_at_walls(to_wall))
                 }
                 Some(plan) => Some(Fracture::of_law(&bonds, &all.particles, plan.faces, plan.volume)),
                 None => None,

@@ -96,6 +96,7 @@ impl BondedStatics {
             pairs: body.bonds.pairs(),
             radius: &all.radius,
             strength_factors: plan.map_or(&[][..], |plan| &plan.strength_factors),
+            to_wall: plan.map_or(&[][..], |plan| &plan.to_wall),
             fraction: body.fraction,
             volume: plan.map_or(1.0, |plan| plan.volume),
             displacement: 1.0,

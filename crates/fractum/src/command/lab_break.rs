@@ -44,6 +44,9 @@ pub(crate) struct BreakArguments {
     /// Share by which bonds are stiffer for each of their particles at a wall.
     #[arg(long, default_value_t = 0.0)]
     wall_stiffening: f64,
+    /// Take the stress of particles at walls at these, by its gradient, instead of at the middle of their neighbourhoods.
+    #[arg(long)]
+    at_walls: bool,
     /// Young's modulus of the beams, such as "678 GPa".
     #[arg(long, default_value = "678 GPa")]
     beam_young: String,
@@ -176,6 +179,9 @@ pub(crate) fn run(arguments: &BreakArguments) -> Result<(), Failure> {
     let started = Instant::now();
     let sample = Sample::new(packing, arguments.coordination, arguments.convention).map_err(wrong)?;
     let mut sample = sample.stiffen_walls(arguments.wall_stiffening).map_err(wrong)?;
+    if arguments.at_walls {
+        sample = sample.read_at_walls();
+    }
     sample.set_micro(micro).map_err(|error| Failure::input(error.to_string()))?;
     let criterion = arguments.criterion(&sample)?;
     if arguments.wall_stiffening > 0.0 && criterion.level().is_none() {

@@ -205,14 +205,15 @@ impl Plan {
             ),
         );
         let breaking = match &report.fracture {
-            Some(FoundStrengths { criterion, origin, crushing, .. }) => {
+            Some(FoundStrengths { criterion, at_walls, origin, crushing, .. }) => {
                 let tests = if crushing.is_some() { ", and three prisms in compression" } else { "" };
                 let found = match origin {
                     Origin::Made => format!("found now by breaking three boxes in tension{tests}"),
                     Origin::Cached => "from the cache".to_owned(),
                     Origin::Given => "as given".to_owned(),
                 };
-                format!("bonds break by {}; strengths {found}", criterion_text(criterion))
+                let where_read = if *at_walls { ", at walls the stress of the wall" } else { "" };
+                format!("bonds break by {}{where_read}; strengths {found}", criterion_text(criterion))
             }
             None => "bonds hold: the material has no fracture".to_owned(),
         };

@@ -123,6 +123,7 @@ fn breaking<'a>(sample: &'a Sample, setup: &Setup, options: &FailureOptions) -> 
         pairs: &sample.network.pairs,
         radius: &sample.packing.radius,
         strength_factors: &[],
+        to_wall: &sample.to_wall,
         fraction: sample.fraction,
         volume: sample.measured_volume(),
         displacement: setup.displacement,
@@ -198,6 +199,26 @@ mod tests {
         assert!((moved.first_break.unwrap() / rest.first_break.unwrap() - 1.0).abs() < 0.01, "{moved:?}");
         assert!((moved.strength / rest.strength - 1.0).abs() < 0.02, "{} {}", moved.strength, rest.strength);
         assert!(moved.broken > 100 && moved.energy.residual_max_relative < 1e-3, "{:?}", moved.energy);
+    }
+
+    #[test]
+    fn read_at_its_walls_a_rod_breaks_first_as_much_earlier_as_its_stress_grows_outwards() {
+        let first = |domain: &Domain, test: Failure| {
+            let packing = pack(&PackSpec::new(domain.clone(), 700, 1)).unwrap();
+            let mut sample = Sample::new(packing, 10.0, Convention::All).unwrap();
+            sample.set_micro(Micro { radius_ratio: 0.348, young_modulus: 677.94e9 }).unwrap();
+            let level = Level::Neighbours;
+            let criterion = Principal { tensile_strength: 60.06e6, compressive_strength: None, level };
+            let options = FailureOptions::new(test, FractureCriterion::Principal(criterion));
+            let strength = |sample: &Sample| break_sample(sample, test, &options).unwrap();
+            let (plain, at_walls) = (strength(&sample), strength(&sample.clone().read_at_walls()));
+            [at_walls.first_break.unwrap() / plain.first_break.unwrap(), at_walls.strength / plain.strength]
+        };
+        let [_, pulled] = first(&Domain::cuboid(2e-3, 2e-3, 2e-3), Failure::Tension);
+        assert!((pulled - 1.0).abs() < 0.03, "{pulled}");
+        // Six particles across: the middle of a neighbourhood lies a quarter of the radius inside.
+        let [twisted, peak] = first(&Domain::cylinder(4e-3, 0.7e-3), Failure::Torsion);
+        assert!((0.6..0.85).contains(&twisted) && peak < 1.0, "{twisted} {peak}");
     }
 
     #[test]

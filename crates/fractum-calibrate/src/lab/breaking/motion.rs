@@ -202,7 +202,8 @@ impl MovingSample {
         let mut particles = Particles::at_rest(position, radius, motion.density * volume)?;
         let mut bonds =
             Bonds::with_shares(&particles, &sample.network.pairs, &sample.shares, sample.lattice.section())?;
-        let mut fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
+        let fracture = Fracture::new(&bonds, &particles, options.criterion, motion.faces, sample.fraction, volume)?;
+        let mut fracture = fracture.reading_at_walls(&sample.to_wall);
         // Wave speed from the stiffness that the sample shows: c² = E/ρ with E = stress per strain.
         let first_factor = first.displacement / displacement;
         let speed = (first.load * stress_per_load / (first_factor * super::STRAIN) / motion.density).sqrt();

@@ -6,6 +6,7 @@ use fractum_math::Sym3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::super::at_walls::{AtWalls, MOST};
 use super::{BondLoad, BreakMode, Level, LoadCriterion, StressCriterion};
 use crate::bond::{BondGraph, LoadLanes, LoadSizes};
 
@@ -59,6 +60,8 @@ pub(in crate::fracture) struct Neighbourhoods<'a> {
     pub(in crate::fracture) virials: &'a [Sym3],
     /// One over the factor on the strength of each; empty where all are 1.
     pub(in crate::fracture) weakness: &'a [f64],
+    /// What takes stress to walls.
+    pub(in crate::fracture) at_walls: Option<&'a AtWalls>,
     /// First one that is looked at.
     pub(in crate::fracture) first: usize,
 }
@@ -74,6 +77,23 @@ impl Neighbourhoods<'_> {
             Level::Second => self.members[i].iter().for_each(|&j| sum += self.virials[j as usize]),
         }
         sum * self.inverse[i]
+    }
+
+    /// What neighbourhood `i` bears over what it can bear, unless that is below `from`; at a wall that of the wall, which takes the place of
+    /// `stress`. The reading there is at most [`MOST`] times that of the neighbourhood, so that what scatters cannot double it.
+    #[inline]
+    fn ratio(&self, i: usize, criterion: &impl StressCriterion, stress: &mut Sym3, from: f64) -> Option<f64> {
+        let weakness = weakness_of(self.weakness, i);
+        let at_wall = self.at_walls.filter(|at_walls| at_walls.holds(i));
+        let most = at_wall.map_or(1.0, |_| MOST);
+        // Eigenvalues only where they could matter.
+        if criterion.bound(stress) * weakness * most < from {
+            return None;
+        }
+        let ratio = criterion.ratio(stress);
+        let Some(at_walls) = at_wall else { return Some(ratio * weakness) };
+        *stress += at_walls.difference(i, self.virials);
+        Some(criterion.ratio(stress).min(most * ratio) * weakness)
     }
 
     /// Whether one of neighbourhood `i` fulfils a condition.
@@ -144,10 +164,8 @@ impl<C: StressCriterion> StressBatch for C {
         let level = self.level();
         search_blocks(around.first, stress, |i, stress, found| {
             *stress = around.stress(i, level);
-            let weakness = weakness_of(around.weakness, i);
-            // Eigenvalues only where they could matter.
-            if self.bound(stress) * weakness >= limit.min(found.largest()) {
-                found.add(i, self.ratio(stress) * weakness, limit);
+            if let Some(ratio) = around.ratio(i, self, stress, limit.min(found.largest())) {
+                found.add(i, ratio, limit);
             }
         })
     }
@@ -163,9 +181,8 @@ impl<C: StressCriterion> StressBatch for C {
         search_blocks(around.first, stress, |i, stress, found| {
             if around.any_member(i, level, |member| reaching[member]) {
                 *stress = around.stress(i, level);
-                let weakness = weakness_of(around.weakness, i);
-                if self.bound(stress) * weakness >= limit {
-                    found.add(i, self.ratio(stress) * weakness, limit);
+                if let Some(ratio) = around.ratio(i, self, stress, limit) {
+                    found.add(i, ratio, limit);
                 }
             }
         })
