@@ -41,6 +41,7 @@ fn part(name: &str, particles: Particles, bonded: bool, strength: Option<f64>) -
         faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
         volume: 1e-4,
         strength_factors: Vec::new(),
+        to_wall: Vec::new(),
     };
     BondedPart {
         name: name.into(),
@@ -131,7 +132,13 @@ fn a_body_of_local_bonds_that_is_torn_is_two_fragments_and_leaves_as_a_whole() {
         (0..10).for_each(|i| bar.velocity[i].x = if i < 4 { -3.0 } else { 3.0 });
         let law = LocalBond { tensile_strength: 2e6, shear_strength: 2e6, ..LocalBond::elastic(1e9, 0.2) };
         let faces = CrackFaces { friction: 0.3, damping_ratio: 0.0 };
-        let fracture = Some(BondFracture { criterion: None, faces, volume: 1e-4, strength_factors: Vec::new() });
+        let fracture = Some(BondFracture {
+            criterion: None,
+            faces,
+            volume: 1e-4,
+            strength_factors: Vec::new(),
+            to_wall: Vec::new(),
+        });
         of_particles(vec![BondedPart { law: law.into(), fracture, ..part("bar", bar, true, None) }], 0.02)
     };
     let mut scene = build();

@@ -65,6 +65,7 @@ fn breaking(criterion: Option<FractureCriterion>, volume: f64) -> Option<BondFra
         faces: CrackFaces { friction: 0.3, damping_ratio: 0.0 },
         volume,
         strength_factors: Vec::new(),
+        to_wall: Vec::new(),
     })
 }
 
