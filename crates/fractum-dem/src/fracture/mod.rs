@@ -1,6 +1,5 @@
 //! Bonds that break: criteria, the search for what they overload, and the contact of what has broken.
 
-mod at_walls;
 mod crack;
 pub mod criterion;
 mod exchanges;

@@ -3,9 +3,9 @@
 use fractum_math::{Sym3, Vec3, sphere_volume};
 use fractum_parallel::gather_named;
 
-use super::at_walls::{AtWalls, MOST};
 use super::criterion::{
-    BondLoad, BreakMode, FailureSite, FractureCriterion, Level, Neighbourhoods, Release, Rule, SeenBonds, weakness_of,
+    AtWalls, BondLoad, BreakMode, FailureSite, FractureCriterion, Level, MOST, Neighbourhoods, Release, Rule,
+    SeenBonds, weakness_of,
 };
 use super::subdomain::SearchSubdomain;
 use crate::DemError;

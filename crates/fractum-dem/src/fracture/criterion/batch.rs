@@ -6,8 +6,7 @@ use fractum_math::Sym3;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::super::at_walls::{AtWalls, MOST};
-use super::{BondLoad, BreakMode, Level, LoadCriterion, StressCriterion};
+use super::{AtWalls, BondLoad, BreakMode, Level, LoadCriterion, MOST, StressCriterion};
 use crate::bond::{BondGraph, LoadLanes, LoadSizes};
 
 /// Particles or bonds handled as one block by the parallel loops.

@@ -4,6 +4,7 @@
 //! load twice as large has twice the ratio, so that a linear solution tells the load of the first break. A criterion of
 //! stress looks at the virial stress of a particle and its neighbours, one of beams at the bond itself.
 
+mod at_walls;
 mod batch;
 mod beam_rankine;
 mod drucker_prager;
@@ -12,6 +13,7 @@ mod kind;
 mod mohr_coulomb;
 mod principal;
 
+pub(super) use at_walls::{AtWalls, MOST};
 pub use batch::FailureSite;
 pub(super) use batch::{LoadBatch, Neighbourhoods, SeenBonds, StressBatch, weakness_of};
 pub use beam_rankine::BeamRankine;

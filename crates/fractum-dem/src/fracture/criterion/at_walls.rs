@@ -2,11 +2,11 @@
 
 use fractum_math::{Sym3, Vec3};
 
-use super::criterion::Level;
+use super::Level;
 use crate::bond::BondGraph;
 
 /// The most that a reading at a wall may be, over that of the neighbourhood: what scatters from particle to particle is no gradient.
-pub(super) const MOST: f64 = 1.5;
+pub(in crate::fracture) const MOST: f64 = 1.5;
 
 /// Smallest determinant of the second moments of places over the cube of their mean at which they tell a gradient in space.
 const FLAT: f64 = 1e-3;
@@ -21,7 +21,7 @@ const NONE: u32 = u32::MAX;
 /// volume V: ∇σ = M⁻¹ Σ V (x − x̄) σ with M = Σ V (x − x̄) ⊗ (x − x̄). A neighbourhood's stress is a mean, and so that of its own
 /// centroid c; at the wall, p, it is σ + (p − c) · ∇σ. A linear field is met exactly, and a uniform one is not changed.
 #[derive(Clone, Debug)]
-pub(super) struct AtWalls {
+pub(in crate::fracture) struct AtWalls {
     /// Centres without load [m].
     position: Vec<Vec3>,
     /// The row of each particle.
@@ -36,7 +36,7 @@ pub(super) struct AtWalls {
 
 impl AtWalls {
     /// - `to_wall`: from each centre to the wall that it faces, zero off the walls [m]
-    pub(super) fn new(position: &[Vec3], to_wall: &[Vec3]) -> Self {
+    pub(in crate::fracture) fn new(position: &[Vec3], to_wall: &[Vec3]) -> Self {
         let mut at = AtWalls {
             position: position.to_vec(),
             row: vec![NONE; position.len()],
@@ -55,7 +55,14 @@ impl AtWalls {
     /// Finds the factors of a particle anew, from the bonds that hold.
     ///
     /// - `fraction`: volume fraction of the interior
-    pub(super) fn gather(&mut self, i: usize, graph: &BondGraph, volume: &[f64], fraction: f64, level: Level) {
+    pub(in crate::fracture) fn gather(
+        &mut self,
+        i: usize,
+        graph: &BondGraph,
+        volume: &[f64],
+        fraction: f64,
+        level: Level,
+    ) {
         let AtWalls { position, row, walls, factors, near } = self;
         let Some((_, wall)) = walls.get(row[i] as usize) else { return };
         let factors = &mut factors[row[i] as usize];
@@ -93,13 +100,13 @@ impl AtWalls {
 
     /// Whether a particle is at a wall.
     #[inline]
-    pub(super) fn holds(&self, i: usize) -> bool {
+    pub(in crate::fracture) fn holds(&self, i: usize) -> bool {
         self.row[i] != NONE
     }
 
     /// What the stress at the wall of such a particle is above that of its neighbourhood [Pa].
     #[inline]
-    pub(super) fn difference(&self, i: usize, virials: &[Sym3]) -> Sym3 {
+    pub(in crate::fracture) fn difference(&self, i: usize, virials: &[Sym3]) -> Sym3 {
         let mut sum = Sym3::ZERO;
         self.factors[self.row[i] as usize].iter().for_each(|&(j, factor)| sum += virials[j as usize] * factor);
         sum
