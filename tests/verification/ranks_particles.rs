@@ -126,11 +126,20 @@ fn bonds_that_break_by_any_criterion_have_the_same_bits_on_any_number_of_ranks()
         principal(Level::Neighbours),
         principal(Level::Second),
     ];
-    for criterion in criteria {
-        let single = same_on_ranks(120, || pulled(BEAM, breaking(Some(criterion), VOLUME), 20.0));
+    let breaks = |criterion, to_wall: Vec<Vec3>| {
+        let fracture = || breaking(Some(criterion), VOLUME).map(|own| BondFracture { to_wall: to_wall.clone(), ..own });
+        let single = same_on_ranks(120, || pulled(BEAM, fracture(), 20.0));
         let broken = single.counts().broken_bonds;
         assert!(broken > 20 && broken < 9000, "{criterion:?}: {broken}");
-    }
+        broken
+    };
+    let inside = criteria.map(|criterion| breaks(criterion, Vec::new()));
+    // Judged at the lower sides.
+    let [_, y, z] = BAR;
+    let lower = |k: usize| if k == 0 { -RADIUS } else { 0.0 };
+    let to_wall: Vec<Vec3> =
+        (0..BAR.iter().product()).map(|i| Vec3::new(0.0, lower(i / z % y), lower(i % z))).collect();
+    assert_ne!(breaks(principal(Level::Neighbours), to_wall), inside[3]);
 }
 
 #[test]
