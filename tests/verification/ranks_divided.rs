@@ -91,7 +91,7 @@ fn same_as_whole(kinematics: Kinematics, damping: LocalDamping, viscous: bool) {
     let mut single = loaded(whole, facets.clone(), damping, viscous);
     advance(&mut single, 40);
     let fields_of = |scene: &Scene, body| {
-        let earlier = scene.solid.displacements_before(scene.clock.dt_before);
+        let earlier = fields::displacements_before(&scene.solid, scene.clock.dt_before);
         [None, Some(&earlier[..])].map(|earlier| fields::element_fields(&scene.solid, body, earlier))
     };
     let fields = [0, 1].map(|body| fields_of(&single, body));

@@ -34,6 +34,7 @@ mod modes;
 mod periodic;
 mod pumped;
 pub mod ranks;
+mod repeat;
 mod saved;
 mod scene;
 mod setup;
@@ -86,12 +87,13 @@ pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};
 pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use modes::{Mode, Modes};
-pub use periodic::{
-    BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, into_periodic_box, measure_periodic_box,
-    periodic_cell, periodic_cell_of, periodic_state, restore_periodic, with_periodic_box,
-};
+pub use periodic::{BoxServo, BoxStrain, PeriodicBox, PeriodicState, periodic_cell};
 pub use pumped::{liquid_of, with_liquid};
 pub use ranks::Watched;
+pub use repeat::{
+    BoxMeasure, into_periodic_box, measure_periodic_box, periodic_cell_of, periodic_state, restore_periodic,
+    with_periodic_box,
+};
 pub use saved::SceneState;
 pub use scene::{Scene, SceneSettings};
 pub use stage::{released_forces, with_excavation};

@@ -113,7 +113,8 @@ fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackF
     }
 }
 
-/// Adds the facets of other bodies that removed elements have left bare. A body that has wholly left takes no crack with it.
+/// Adds the facets of other bodies that removed elements have left bare, of those that may break: ranks have all elements of these alone.
+/// A body that has wholly left takes no crack with it.
 fn add_beyond_borders(solid: &Solid, borders: &mut Borders, facets: &mut Vec<CrackFacet>) {
     borders.retain(|_, (body, ..)| solid.bodies[*body].alive.contains(&true));
     if borders.is_empty() || solid.bodies.len() == 1 {
@@ -121,7 +122,7 @@ fn add_beyond_borders(solid: &Solid, borders: &mut Borders, facets: &mut Vec<Cra
     }
     let mut is_bare = vec![false; solid.reference.len()];
     borders.keys().flatten().for_each(|&node| is_bare[node as usize] = true);
-    for (body, model) in solid.bodies.iter().enumerate() {
+    for (body, model) in solid.bodies.iter().enumerate().filter(|(_, model)| model.body.damage.is_some()) {
         for (behind, element) in (0..).zip(model.body.elements.iter()).filter(|&(e, _)| model.alive[e as usize]) {
             for side in sides(model).iter().map(|(local, ..)| local.map(|k| element[k])) {
                 let bare = side.iter().all(|&node| is_bare[node as usize]);
@@ -172,7 +173,7 @@ mod tests {
     use crate::body::Body;
     use fractum_mesh::generate::{structured_box, structured_rectangle};
 
-    /// A bar, elastic and a body of its own up to x = `border`.
+    /// A bar, a stronger body of its own up to x = `border`.
     fn broken(shape: ElementKind, nodes: Vec<Vec3>, elements: Vec<[u32; 4]>, border: f64) -> Solid {
         let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.0 };
         let law = DamageLaw::rankine(3e6, 100.0);
@@ -180,7 +181,8 @@ mod tests {
         let (rest, elements): (Vec<_>, Vec<_>) = elements.into_iter().partition(is_rest);
         let mut bodies = vec![Body::new("bar", shape, elements, elastic).smoothed().with_damage(law)];
         if !rest.is_empty() {
-            bodies.push(Body::new("rest", shape, rest, elastic));
+            let strong = DamageLaw::rankine(3e12, 1e15);
+            bodies.push(Body::new("rest", shape, rest, elastic).smoothed().with_damage(strong));
         }
         bodies.iter_mut().for_each(|body| body.thickness = 0.3);
         let mut solid = Solid::new(nodes, bodies).unwrap();

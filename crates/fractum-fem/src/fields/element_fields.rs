@@ -25,6 +25,12 @@ pub fn element_fields(solid: &Solid, index: usize, earlier: Option<&[Vec3]>) -> 
     means(model, |at| cell_field(solid, index, at, earlier))
 }
 
+/// Displacements of all nodes a time `dt` [s] earlier, at their present velocities [m].
+pub fn displacements_before(solid: &Solid, dt: f64) -> Vec<Vec3> {
+    let nodes = solid.displacement.iter().zip(&solid.velocity);
+    nodes.map(|(displacement, velocity)| displacement - velocity * dt).collect()
+}
+
 /// What cells hold, as means over the edges of each element where the body is smoothed.
 fn means(model: &BodyModel, of_cell: impl Fn((u32, u32)) -> (Sym3, f64) + Sync + Send) -> Vec<(Sym3, f64)> {
     let count = model.smoothed_edges().map_or(model.alive.len(), BodyEdges::len) as u32;

@@ -7,7 +7,7 @@ use fractum_math::Vec3;
 use super::subdomain::Nodes;
 use super::{subdomain, subdomain_mut};
 use crate::divided::EdgeValue;
-use crate::fields::element_fields::{cell_field, cell_strain};
+use crate::fields::element_fields::{cell_field, cell_strain, displacements_before};
 use crate::solid::Solid;
 
 /// Has every rank move all nodes in the next step, where something needs all of them.
@@ -68,7 +68,7 @@ fn gather_edge_values(solid: &mut Solid, dt: f64) {
     if subdomain(solid).is_none() {
         return;
     }
-    let earlier = solid.displacements_before(dt);
+    let earlier = displacements_before(solid, dt);
     for body in 0..solid.bodies.len() {
         let Some(own) = subdomain_mut(&mut solid.neighbours) else { return };
         let exchange = Arc::clone(&own.exchange);

@@ -180,15 +180,6 @@ impl Solid {
         self.reference[node] + self.displacement[node]
     }
 
-    /// Displacements of all nodes a time `dt` [s] earlier, at their present velocities [m].
-    pub fn displacements_before(&self, dt: f64) -> Vec<Vec3> {
-        self.displacement
-            .iter()
-            .zip(&self.velocity)
-            .map(|(displacement, velocity)| displacement - velocity * dt)
-            .collect()
-    }
-
     /// Displacement of a node since the start, which in-situ stress may have loaded [m].
     #[inline]
     pub fn displacement_from_start(&self, node: usize) -> Vec3 {

@@ -124,7 +124,7 @@ impl<'a> ProbedScene<'a> {
     /// Stress of an element at the instant of the last step [Pa]; of all elements of its body at once where a probe has many of them.
     pub fn stress(&self, body: usize, element: u32, has_many: bool) -> Sym3 {
         let solid = &self.scene.solid;
-        let earlier = self.earlier.get_or_init(|| solid.displacements_before(self.scene.clock.dt_before));
+        let earlier = self.earlier.get_or_init(|| fields::displacements_before(solid, self.scene.clock.dt_before));
         if !has_many {
             return fields::element_field(solid, body, element, Some(earlier)).0;
         }
