@@ -16,6 +16,7 @@ mod conduct;
 mod contact_pairs;
 mod contacts;
 pub mod coupling;
+mod deform;
 mod domain;
 mod enter;
 mod error;
@@ -53,6 +54,9 @@ pub use contacts::{
     ContactMaterial, ContactProbe, Contacts, Drive, FlatFaces, Form, Inertia, NodesOnShape, Overlap, OverlapWith,
     ParticleContact, RigidBody, Servo, ServoArea, SolidSurface, pieces,
 };
+pub use deform::{
+    into_periodic_box, measure_periodic_box, periodic_cell_of, periodic_state, restore_periodic, with_periodic_box,
+};
 pub use domain::{Domain, Left};
 pub use enter::{entered_of, inlets_of, with_inlets};
 pub use error::{SceneError, StepError};
@@ -86,10 +90,7 @@ pub use measure::radial_cracks::{RadialCracks, RadialMeasure};
 pub use measure::region_probe::{RegionStrain, RegionStress};
 pub use measure::velocity_station::{PeakVelocity, StationPlace, VelocityStation};
 pub use modes::{Mode, Modes};
-pub use periodic::{
-    BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, into_periodic_box, measure_periodic_box,
-    periodic_cell, periodic_cell_of, periodic_state, restore_periodic, with_periodic_box,
-};
+pub use periodic::{BoxMeasure, BoxServo, BoxStrain, PeriodicBox, PeriodicState, periodic_cell};
 pub use pumped::{liquid_of, with_liquid};
 pub use ranks::Watched;
 pub use saved::SceneState;

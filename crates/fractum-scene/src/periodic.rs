@@ -13,8 +13,8 @@ use fractum_math::{Mat3, Vec3, sphere_volume};
 use serde::{Deserialize, Serialize};
 
 use crate::clock::ThisStep;
+use crate::contacts::Contacts;
 use crate::error::StepError;
-use crate::scene::Scene;
 use crate::time_function::TimeFunction;
 
 /// How a box that repeats deforms.
@@ -91,62 +91,6 @@ pub fn periodic_cell(corner: Vec3, size: &Vec3, repeats: [bool; 3]) -> PeriodicC
     PeriodicCell { corner, edges: Mat3::from_diagonal(size), velocity: Mat3::zeros(), repeats }
 }
 
-/// The same scene in a box that repeats, before its first step and with contacts [within](crate::Contacts::within) it.
-pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain) -> Scene {
-    let state = PeriodicState {
-        cell,
-        start: cell.edges,
-        work: [0.0; 2],
-        streaming: 0.0,
-        flow: 0.0,
-        stress: Mat3::zeros(),
-        kinetic_stress: Mat3::zeros(),
-    };
-    scene.optional.periodic = Some(Box::new(PeriodicBox { strain, state }));
-    scene
-}
-
-/// The box of a scene that repeats, as it is now; none where nothing does.
-pub fn periodic_cell_of(scene: &Scene) -> Option<&PeriodicCell> {
-    scene.optional.periodic.as_ref().map(|own| &own.state.cell)
-}
-
-/// Where a particle is within the box that repeats: what its image there has beyond its own place and velocity [m, m/s].
-pub fn into_periodic_box(scene: &Scene, place: &Vec3) -> [Vec3; 2] {
-    periodic_cell_of(scene).map_or([Vec3::zeros(); 2], |cell| cell.into_box(place))
-}
-
-/// What changes in the box that repeats, for a checkpoint.
-pub fn periodic_state(scene: &Scene) -> Option<PeriodicState> {
-    scene.optional.periodic.as_ref().map(|own| own.state.clone())
-}
-
-/// Puts it back, after the state of the scene.
-pub fn restore_periodic(scene: &mut Scene, state: Option<PeriodicState>) {
-    if let (Some(own), Some(state)) = (&mut scene.optional.periodic, state) {
-        scene.contacts.set_cell(&state.cell);
-        own.state = state;
-    }
-}
-
-/// What a probe shows of the box that repeats, when last measured; not a number without one.
-pub fn measure_periodic_box(scene: &Scene, measure: BoxMeasure) -> f64 {
-    let Some(own) = &scene.optional.periodic else { return f64::NAN };
-    let PeriodicState { cell, start, stress, kinetic_stress, .. } = &own.state;
-    match measure {
-        BoxMeasure::Stress([i, j]) => 0.5 * (stress[(i, j)] + stress[(j, i)]),
-        BoxMeasure::KineticStress([i, j]) => kinetic_stress[(i, j)],
-        BoxMeasure::Pressure => -stress.trace() / 3.0,
-        BoxMeasure::SolidFraction => {
-            let radii = scene.bonded.particles.radius.iter();
-            radii.map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
-        }
-        BoxMeasure::Coordination => 2.0 * scene.contacts.touching_among() as f64 / scene.bonded.particles.len() as f64,
-        BoxMeasure::Volume => cell.volume(),
-        BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
-    }
-}
-
 /// Mean motion of the particles.
 struct MeanMotion {
     mass: f64,
@@ -178,39 +122,6 @@ fn gradient(strain: &BoxStrain, time: f64) -> Mat3 {
     gradient
 }
 
-/// Sets the box and the mean flow in motion before the first step.
-pub(crate) fn start_box(scene: &mut Scene, step: &ThisStep) {
-    let Scene { optional, bonded, contacts, .. } = scene;
-    let Some(own) = optional.periodic.as_mut().filter(|_| step.is_first) else { return };
-    let cell = &mut own.state.cell;
-    let after = cell.velocity_under(&gradient(&own.strain, step.time + 0.5 * step.dt_after), step.dt_after);
-    let change = PeriodicCell { velocity: after - cell.velocity, ..*cell }.velocity_gradient();
-    cell.velocity = after;
-    let mean = MeanMotion::of(&bonded.particles);
-    let Particles { position, velocity, .. } = &mut bonded.particles;
-    velocity.iter_mut().zip(position).for_each(|(v, x)| *v += change * (*x - mean.centre));
-    contacts.set_cell(cell);
-}
-
-/// Finds the stress of the box at tⁿ, has it deform until tⁿ⁺¹, and changes the mean flow with it; between the forces of tⁿ and the kick.
-///
-/// # Errors
-/// [`StepError::BoxTooNarrow`].
-pub(crate) fn deform_box(scene: &mut Scene, step: &ThisStep) -> Result<(), StepError> {
-    let Some(mut own) = scene.optional.periodic.take() else { return Ok(()) };
-    let outcome = own.deform(scene, step);
-    scene.optional.periodic = Some(own);
-    outcome
-}
-
-/// Books what the sides do in the half step that has begun.
-pub(crate) fn book_box(scene: &mut Scene) {
-    if let Some(own) = &mut scene.optional.periodic {
-        let [work, after] = &mut own.state.work;
-        *work += std::mem::take(after);
-    }
-}
-
 /// Work of the box; the kinetic energy that the particles as they stand have beyond that against the mean flow; and that of the mean flow in
 /// the box, ∫ ½ ρ |L x|² dV about its middle [J].
 pub(crate) fn box_energies(own: Option<&PeriodicBox>) -> [f64; 3] {
@@ -225,11 +136,78 @@ impl std::fmt::Debug for PeriodicBox {
 }
 
 impl PeriodicBox {
-    fn deform(&mut self, scene: &mut Scene, step: &ThisStep) -> Result<(), StepError> {
+    /// A box before the first step.
+    pub(crate) fn new(cell: PeriodicCell, strain: BoxStrain) -> Self {
+        let state = PeriodicState {
+            cell,
+            start: cell.edges,
+            work: [0.0; 2],
+            streaming: 0.0,
+            flow: 0.0,
+            stress: Mat3::zeros(),
+            kinetic_stress: Mat3::zeros(),
+        };
+        PeriodicBox { strain, state }
+    }
+
+    pub(crate) fn cell(&self) -> &PeriodicCell {
+        &self.state.cell
+    }
+
+    pub(crate) fn state(&self) -> PeriodicState {
+        self.state.clone()
+    }
+
+    pub(crate) fn restore(&mut self, state: PeriodicState) {
+        self.state = state;
+    }
+
+    /// What a probe shows, when last measured.
+    pub(crate) fn measure(&self, particles: &Particles, contacts: &Contacts, measure: BoxMeasure) -> f64 {
+        let PeriodicState { cell, start, stress, kinetic_stress, .. } = &self.state;
+        match measure {
+            BoxMeasure::Stress([i, j]) => 0.5 * (stress[(i, j)] + stress[(j, i)]),
+            BoxMeasure::KineticStress([i, j]) => kinetic_stress[(i, j)],
+            BoxMeasure::Pressure => -stress.trace() / 3.0,
+            BoxMeasure::SolidFraction => {
+                particles.radius.iter().map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
+            }
+            BoxMeasure::Coordination => 2.0 * contacts.touching_among() as f64 / particles.len() as f64,
+            BoxMeasure::Volume => cell.volume(),
+            BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
+        }
+    }
+
+    /// Sets the box and the mean flow in motion before the first step.
+    pub(crate) fn start(&mut self, particles: &mut Particles, step: &ThisStep) {
+        let cell = &mut self.state.cell;
+        let after = cell.velocity_under(&gradient(&self.strain, step.time + 0.5 * step.dt_after), step.dt_after);
+        let change = PeriodicCell { velocity: after - cell.velocity, ..*cell }.velocity_gradient();
+        cell.velocity = after;
+        let mean = MeanMotion::of(particles);
+        let Particles { position, velocity, .. } = particles;
+        velocity.iter_mut().zip(position).for_each(|(v, x)| *v += change * (*x - mean.centre));
+    }
+
+    /// Books what the sides do in the half step that has begun.
+    pub(crate) fn book(&mut self) {
+        let [work, after] = &mut self.state.work;
+        *work += std::mem::take(after);
+    }
+
+    /// Finds the stress at tⁿ, has the box deform until tⁿ⁺¹, and changes the mean flow with it; between the forces of tⁿ and the kick.
+    ///
+    /// # Errors
+    /// [`StepError::BoxTooNarrow`] in the step of this number.
+    pub(crate) fn deform(
+        &mut self,
+        particles: &mut Particles,
+        contacts: &mut Contacts,
+        step: &ThisStep,
+        number: u64,
+    ) -> Result<(), StepError> {
         let ThisStep { is_first, measure, dt_before, dt_after, .. } = *step;
-        let Scene { bonded, contacts, .. } = scene;
         let PeriodicBox { strain, state } = self;
-        let particles = &mut bonded.particles;
         let deforms = !strain.rates.is_empty() || !strain.servos.is_empty();
         if !deforms && !measure {
             return Ok(());
@@ -269,7 +247,7 @@ impl PeriodicBox {
         let (narrowest, needed) = (state.cell.narrowest(), contacts.narrowest_box());
         // A box that is no number is left to the balance.
         if narrowest < needed {
-            return Err(StepError::BoxTooNarrow { step: scene.clock.step, time: step.time, narrowest, needed });
+            return Err(StepError::BoxTooNarrow { step: number, time: step.time, narrowest, needed });
         }
         Ok(())
     }

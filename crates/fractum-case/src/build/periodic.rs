@@ -26,12 +26,8 @@ pub(super) fn check(context: &mut Context<'_>) {
     for (place, found, expected) in refused(case, periodic) {
         context.error(place, found, expected);
     }
-    let servo = periodic.servo.iter().flat_map(|servo| servo.stress.iter().map(|(_, stress)| stress));
-    for function in periodic.rates.iter().map(|(_, rate)| rate).chain(servo) {
-        if function.value.depends_on_position() {
-            context.error(&function.place, "depends on the position", "a function of time only");
-        }
-        super::precheck::check_function(context, &function.value, function, None);
+    for function in periodic.functions().filter(|function| function.value.depends_on_position()) {
+        context.error(&function.place, "depends on the position", "a function of time only");
     }
 }
 

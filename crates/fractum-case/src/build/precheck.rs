@@ -243,6 +243,7 @@ fn check_time_functions(context: &mut Context<'_>) {
     functions.extend(pressures.map(|(function, _)| (function, None)));
     let injections = case.flows.liquid.iter().flat_map(|liquid| &liquid.injections);
     functions.extend(injections.map(|own| (&own.value, Some(&own.on))));
+    functions.extend(case.periodic.iter().flat_map(|periodic| periodic.functions()).map(|function| (function, None)));
     for (function, on) in functions {
         check_function(context, &function.value, function, on);
     }
@@ -255,12 +256,7 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
 }
 
-pub(super) fn check_function<T>(
-    context: &mut Context<'_>,
-    function: &TimeFunction,
-    written: &Spanned<T>,
-    on: Option<&Selection>,
-) {
+fn check_function<T>(context: &mut Context<'_>, function: &TimeFunction, written: &Spanned<T>, on: Option<&Selection>) {
     let mut positions: Vec<Vec3> = Vec::new();
     if let Some(on) = on.filter(|_| function.depends_on_position()) {
         let all = || (0..context.mesh.nodes.len() as u32).collect();

@@ -33,6 +33,12 @@ pub struct BoxServo {
 }
 
 impl Periodic {
+    /// What changes with time.
+    pub fn functions(&self) -> impl Iterator<Item = &Spanned<TimeFunction>> {
+        let stress = self.servo.iter().flat_map(|servo| servo.stress.iter().map(|(_, stress)| stress));
+        self.rates.iter().map(|(_, rate)| rate).chain(stress)
+    }
+
     /// Whether it deforms.
     pub fn deforms(&self) -> bool {
         !self.rates.is_empty() || self.servo.is_some()
