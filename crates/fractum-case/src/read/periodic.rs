@@ -44,12 +44,15 @@ fn axes(table: &Table<'_>) -> Option<[bool; 3]> {
     Some(axes)
 }
 
+/// A component of a tensor, by its indices.
+type Component = ([usize; 2], Spanned<TimeFunction>);
+
 /// Components of a table by their names; none where the table is absent.
 fn components(
     parent: &Table<'_>,
     name: &'static str,
     known: &[(&'static str, [usize; 2])],
-) -> Option<Option<Vec<([usize; 2], Spanned<TimeFunction>)>>> {
+) -> Option<Option<Vec<Component>>> {
     if !parent.has(name) {
         return Some(None);
     }
