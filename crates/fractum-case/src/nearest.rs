@@ -33,13 +33,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     }
     let plain = |text: &str| text.to_lowercase().replace(['-', ' '], "_");
     let name = plain(name);
-    let candidates: Vec<&str> = candidates.into_iter().collect();
-    if !candidates.contains(&name.as_str())
-        && let Some((_, here)) = CALLED.iter().find(|(names, _)| names.contains(&name.as_str()))
-        && let Some(found) = candidates.iter().find(|candidate| *candidate == here)
-    {
-        return Some(found);
-    }
+    let called = CALLED.iter().find(|(names, _)| names.contains(&name.as_str())).map(|(_, here)| *here);
     let distance = |candidate: &str| strsim::osa_distance(&name, &plain(candidate));
     let allowed = |candidate: &str| (candidate.chars().count().max(name.chars().count()) / 3).max(1);
     let begins = |candidate: &str| {
@@ -51,6 +45,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     let close = close.map(|candidate| (distance(candidate), candidate));
     // What differs in few letters comes before what only begins alike.
     let rank = |&(distance, candidate): &(usize, &str)| match distance <= allowed(candidate) {
+        _ if called == Some(candidate) => Some((0, 0)),
         true => Some((0, distance)),
         false => begins(candidate).then_some((1, distance)),
     };
