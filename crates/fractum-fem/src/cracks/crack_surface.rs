@@ -108,6 +108,7 @@ fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackF
                 facets.push(crack_facet(solid, (body, behind), (body, removed), nodes, opposite));
             }
             Some(_) => {}
+            None if solid.bodies.len() == 1 => {}
             None => drop(borders.insert(sorted(nodes), (body, removed, nodes, opposite))),
         }
     }
@@ -117,7 +118,7 @@ fn add_exposed(solid: &Solid, body: usize, removed: u32, facets: &mut Vec<CrackF
 /// A body that has wholly left takes no crack with it.
 fn add_beyond_borders(solid: &Solid, borders: &mut Borders, facets: &mut Vec<CrackFacet>) {
     borders.retain(|_, (body, ..)| solid.bodies[*body].alive.contains(&true));
-    if borders.is_empty() || solid.bodies.len() == 1 {
+    if borders.is_empty() {
         return;
     }
     let mut is_bare = vec![false; solid.reference.len()];
