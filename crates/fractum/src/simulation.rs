@@ -286,7 +286,10 @@ impl Simulation {
             return Ok(());
         }
         let every = Duration::try_from_secs_f64(self.case.output.checkpoint_every).unwrap_or(Duration::MAX);
-        let save_is_due = self.saved.is_none_or(|saved| saved.at.elapsed() >= every);
+        let step = self.scene.clock.step;
+        let by_steps = self.case.output.checkpoint_steps.is_some_and(|steps| step.is_multiple_of(steps));
+        let save_is_due =
+            self.saved.is_none_or(|saved| saved.at.elapsed() >= every || (by_steps && saved.step != step));
         let [interrupted, save_is_due] = self.ranks.any([is_interrupted(), save_is_due]);
         if interrupted {
             self.save()?;

@@ -21,6 +21,7 @@ pub(super) static LAST: &[KeyDoc] = &[
     key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
     key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),
     key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall-clock time between checkpoints, > 0"),
+    key("output.checkpoint.steps", K::Integer, "", "Steps after each of which a checkpoint is saved as well, >= 1: places that do not depend on the clock"),
     key("output.fragments", K::Table, "", "Definition of a fragment"),
     key("output.fragments.joined_below", K::Quantity(D::NONE), "0.95", "Edges join a fragment while the share of their strength that they have lost is below this, within 0 and 1"),
     key("output.ppv[]", K::Tables, "", "Peak particle velocity of solids against scaled distance from a hole: ppv.csv, summary.json, a figure with its power law in the report"),

@@ -17,6 +17,8 @@ pub struct Output {
     pub history_every: f64,
     /// Wall time between checkpoints [s].
     pub checkpoint_every: f64,
+    /// Steps after each of which a checkpoint is saved as well, from 1.
+    pub checkpoint_steps: Option<u64>,
     /// Share of its strength that an edge may have lost and still join a fragment, above 0 up to 1.
     pub joined_below: f64,
     /// Peak particle velocity against distance.

@@ -24,6 +24,7 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
     let table = root.table_or_empty("output");
     let mut further = OutputFields::default();
     let mut pieces = 1;
+    let mut steps = None;
     let mut every = |name: &'static str, longest: Option<f64>| {
         let inner = table.table(name)?;
         let every = inner.quantity("every").positive().spanned();
@@ -31,6 +32,9 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
             further = OutputFields::of(|field| inner.flag(field.key()).or(false));
             pieces = inner.integer("pieces").check(|count| (1..=MOST_PIECES).contains(count), "1 to 4096").or(1);
             every.given()
+        } else if name == "checkpoint" {
+            steps = inner.integer("steps").check(|&steps| steps > 0, "1 or more").given();
+            if steps.is_some() { every.given() } else { every.required() }
         } else {
             every.required()
         };
@@ -70,6 +74,7 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
         frame_pieces: pieces as usize,
         history_every: history.unwrap_or(end / ROWS),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
+        checkpoint_steps: steps,
         joined_below,
         ppv: ppv?,
         gauges: gauges?,
