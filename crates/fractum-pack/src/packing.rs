@@ -114,6 +114,29 @@ impl Packing {
         self.way_to_walls(|depth, _| depth)
     }
 
+    /// The way out of the shape at each particle that touched one wall, a flat one; zero for the others.
+    pub fn out_of_flat_walls(&self) -> Vec<Vec3> {
+        let mut walls = vec![0u32; self.len()];
+        self.walls.iter().flat_map(|(_, set)| set).for_each(|&i| walls[i as usize] += 1);
+        let mut out = vec![Vec3::zeros(); self.len()];
+        for (wall, (_, set)) in self.walls.iter().enumerate() {
+            let way = |i: u32| {
+                let mut way = Vec3::zeros();
+                self.domain.walls_at(&self.position[i as usize], |other, _, inward| {
+                    if other == wall {
+                        way = -inward;
+                    }
+                });
+                way
+            };
+            let Some(first) = set.first().map(|&i| way(i)) else { continue };
+            if set.iter().all(|&i| (way(i) - first).norm() < 1e-9) {
+                set.iter().filter(|&&i| walls[i as usize] == 1).for_each(|&i| out[i as usize] = first);
+            }
+        }
+        out
+    }
+
     /// The way of each particle towards the walls that it touched.
     ///
     /// - `length`: of the way to one of them, from the depth of the centre below it and the radius
@@ -332,6 +355,9 @@ mod tests {
                 });
             }
         }
+        let out = packing.out_of_flat_walls();
+        assert!(out.iter().zip(&to_walls).all(|(out, way)| out.cross(way).norm() < 1e-12));
+        assert!(out.iter().any(|out| (out.norm() - 1.0).abs() < 1e-12));
         assert!(shift.iter().any(|s| s.norm() > 0.0) && shift.iter().all(|s| s.norm() < 0.1 * packing.mean_radius()));
         assert!(packing.on_wall().iter().zip(&shift).all(|(on, s)| *on || s.norm() == 0.0));
     }

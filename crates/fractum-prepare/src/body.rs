@@ -22,6 +22,8 @@ pub struct PreparedBody {
     pub domain: Option<Domain>,
     /// How far each particle is from touching the walls of the shape exactly [m]; empty where that does not matter.
     pub shift_to_walls: Vec<Vec3>,
+    /// The way out of the shape at each particle of a flat wall alone, zero for the others; empty where that does not matter.
+    pub out_of_flat_walls: Vec<Vec3>,
     /// Volume fraction of the interior of its packing.
     pub fraction: f64,
     /// When its bonds break, with the criterion's own strengths.

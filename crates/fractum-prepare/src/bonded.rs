@@ -205,6 +205,7 @@ impl Maker<'_> {
             particles: made.particles,
             pairs: made.sample.network.pairs,
             shift_to_walls: made.sample.packing.shift_to_walls(),
+            out_of_flat_walls: made.sample.packing.out_of_flat_walls(),
             walls: made.sample.packing.walls,
             domain: Some(made.sample.packing.domain),
             arrivals: None,

@@ -79,6 +79,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         walls,
         domain: None,
         shift_to_walls: Vec::new(),
+        out_of_flat_walls: Vec::new(),
         fraction: 1.0,
         fracture: None,
         arrivals,

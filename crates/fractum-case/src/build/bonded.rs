@@ -68,7 +68,7 @@ impl Context<'_> {
                 sets.push((name.value.clone(), set));
             }
             self.particle_sets.push(ParticleSets { body: index, sets, walls: domain });
-            self.flat_faces.push(flat_faces(&case.materials[material], made.shift_to_walls));
+            self.flat_faces.push(flat_faces(&case.materials[material], [made.shift_to_walls, made.out_of_flat_walls]));
             parts.push(BondedPart {
                 name: body.name.value.clone(),
                 particles: made.particles,
@@ -176,10 +176,10 @@ impl Context<'_> {
 }
 
 /// Faces of a bonded body as rigid bodies feel them; none where its particles touch as spheres of the modulus given for them.
-fn flat_faces(material: &Material, shift: Vec<Vec3>) -> Option<FlatFaces> {
+fn flat_faces(material: &Material, [shift, out]: [Vec<Vec3>; 2]) -> Option<FlatFaces> {
     let flat = material.contact_modulus.is_none() && !shift.is_empty();
     let (young_modulus, poisson_ratio) = (material.young_modulus, material.poisson_ratio);
-    flat.then_some(FlatFaces { young_modulus, poisson_ratio, shift })
+    flat.then_some(FlatFaces { young_modulus, poisson_ratio, shift, out })
 }
 
 /// Velocity of a field at a place [m/s], and its rate of rotation over a radius there, half the curl [rad/s]; none where all is at rest.

@@ -177,6 +177,7 @@ step = "0.1 us"
         walls: Vec::new(),
         domain: None,
         shift_to_walls: Vec::new(),
+        out_of_flat_walls: Vec::new(),
         fraction: 0.6,
         fracture: None,
         arrivals: None,

@@ -303,6 +303,7 @@ end = "1 ms"
             walls: Vec::new(),
             domain: None,
             shift_to_walls: Vec::new(),
+            out_of_flat_walls: Vec::new(),
             fraction: 0.6,
             fracture: Some(fracture),
             arrivals: None,

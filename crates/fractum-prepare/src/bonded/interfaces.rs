@@ -93,6 +93,7 @@ fn with_interfaces(
         domain: Some(sample.packing.domain.clone()),
         arrivals: None,
         shift_to_walls: sample.packing.shift_to_walls(),
+        out_of_flat_walls: sample.packing.out_of_flat_walls(),
         fraction: sample.fraction,
         fracture: own.law.can_fail().then_some(fracture),
         replaced,

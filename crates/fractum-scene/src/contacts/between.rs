@@ -104,7 +104,7 @@ impl Contacts {
             for touch in contacts.touches() {
                 touched(
                     touch,
-                    self.flat.place(particles, touch.sphere as usize) + touch.offset,
+                    self.flat.place(particles, touch.sphere as usize, &self.rigid_bodies[index]) + touch.offset,
                     ContactBody::Rigid(index),
                 );
             }

@@ -12,19 +12,23 @@ use fractum_math::Work;
 use fractum_parallel::gather;
 
 use super::Contacts;
+use super::flat_faces::Poses;
 use super::debris_among::{DebrisAmong, Made};
 use crate::coupling::Debris;
 
 impl Contacts {
     /// Which searches are due by the way of some particles: of pairs, then on rigid bodies, on solids, and among discrete elements.
     fn due(&mut self, solid: &Solid, debris: &Debris, particles: &Particles, range: Range<usize>) -> Vec<bool> {
-        self.flat.locate(particles, range.clone());
+        let poses = Poses::of(particles);
+        self.flat.locate(&poses, range.clone());
         let Contacts { among, rigid_bodies, on_tools, solids, flat, nodes, .. } = self;
         let spheres = spheres(particles);
-        let felt = flat.felt(spheres);
         let of_pairs = among.iter().map(|among| among.is_used_up(&spheres, range.clone()));
         let grounds = rigid_bodies.iter().zip(&*on_tools);
-        let on_bodies = grounds.map(|(body, (contacts, _))| contacts.is_used_up(&body.ground(), &felt, range.clone()));
+        let on_bodies = grounds.map(|(body, (contacts, _))| {
+            flat.locate_for(&poses, body);
+            contacts.is_used_up(&body.ground(), &flat.felt(spheres), range.clone())
+        });
         let on_solids = solids.iter_mut().map(|ground| ground.is_used_up(solid, &spheres, range.clone()));
         let near_debris = nodes.debris.iter_mut().filter(|_| !debris.is_empty());
         let of_debris = near_debris.map(|among| among.is_used_up(solid, debris, particles, range.clone()));
@@ -50,7 +54,8 @@ impl Contacts {
 
     /// Does the searches that are due, once all particles are where they are.
     pub(crate) fn search(&mut self, due: &[bool], solid: &Solid, debris: &Debris, particles: &Particles) {
-        self.flat.locate(particles, 0..particles.len());
+        let poses = Poses::of(particles);
+        self.flat.locate(&poses, 0..particles.len());
         let spheres = spheres(particles);
         let mut due = due.iter().copied();
         if let Some(mut among) = self.among.take() {
@@ -60,10 +65,10 @@ impl Contacts {
             self.among = Some(among);
         }
         let Contacts { rigid_bodies, on_tools, solids, flat, .. } = self;
-        let felt = flat.felt(spheres);
         for (rigid_body, (contacts, _)) in rigid_bodies.iter().zip(on_tools) {
             if due.next() == Some(true) {
-                contacts.renew(&rigid_body.ground(), &felt);
+                flat.locate_for(&poses, rigid_body);
+                contacts.renew(&rigid_body.ground(), &flat.felt(spheres));
             }
         }
         for ground in solids {

@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
 pub use between::{ContactProbe, ParticleContact};
-use flat_faces::FlatBodies;
+use flat_faces::{FlatBodies, Poses};
 pub use flat_faces::FlatFaces;
 pub(crate) use held_nodes::{HoldStep, hold_nodes};
 pub use node_contacts::pieces;
@@ -332,12 +332,13 @@ impl Contacts {
         if let Some(part) = part {
             work += self.add_forces_among(part, particles, dt);
             let near: Vec<u32> = self.near().collect();
-            self.flat.locate(particles, near.iter().map(|&i| i as usize));
+            self.flat.locate(&Poses::of(particles), near.iter().map(|&i| i as usize));
         } else {
-            self.flat.locate(particles, 0..particles.len());
+            self.flat.locate(&Poses::of(particles), 0..particles.len());
         }
-        let Particles { position, velocity, spin, radius, mass, force, moment, .. } = particles;
+        let Particles { position, velocity, spin, orientation, radius, mass, force, moment, .. } = particles;
         let spheres = Spheres { position, velocity, spin, radius };
+        let poses = Poses { position, velocity, spin, orientation, radius };
         if let Some(mut among) = self.among.take_if(|_| searches) {
             among.search(&spheres, |i, j| self.law_among(radius, mass, i, j));
             work += among.add_forces(&spheres, force, moment, dt);
@@ -345,8 +346,9 @@ impl Contacts {
         }
         let Contacts { body, rigid_bodies, on_tools, solids, flat, nodes, .. } = self;
         let body = &*body;
-        let felt = flat.felt(spheres);
         for (rigid_body, (contacts, pairs)) in rigid_bodies.iter_mut().zip(on_tools) {
+            flat.locate_for(&poses, rigid_body);
+            let (flat, felt) = (&*flat, flat.felt(spheres));
             let heavy = rigid_body.mass();
             let law = |i: u32, curvature: f64| {
                 let i = i as usize;
