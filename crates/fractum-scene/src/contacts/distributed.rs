@@ -12,8 +12,8 @@ use fractum_math::Work;
 use fractum_parallel::gather;
 
 use super::Contacts;
-use super::flat_faces::Poses;
 use super::debris_among::{DebrisAmong, Made};
+use super::flat_faces::Poses;
 use crate::coupling::Debris;
 
 impl Contacts {

@@ -295,3 +295,31 @@ impl Contacts {
         deep
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_a_face_is_felt_where_it_is_nearest_to_the_axis() {
+        let line = |along: Vec3| Line { through: Vec3::new(0.3, 5.0, 2.0), along: along.normalize() };
+        let (place, out) = (Vec3::new(0.0, 0.0, 0.0), Vec3::y());
+        // Across the axis as far as the axis is away, and no farther than the part is wide.
+        let along_z = line(Vec3::z());
+        assert!((along_z.beside(&place, &out, 1.0) - Vec3::new(0.3, 0.0, 0.0)).norm() < 1e-15);
+        assert!((along_z.beside(&place, &out, 0.1) - Vec3::new(0.1, 0.0, 0.0)).norm() < 1e-15);
+        // The other sense of the axis or of the normal changes nothing.
+        assert_eq!(along_z.beside(&place, &out, 0.1), line(-Vec3::z()).beside(&place, &out, 0.1));
+        assert_eq!(along_z.beside(&place, &-out, 0.1), along_z.beside(&place, &out, 0.1));
+        // A cylinder that stands on the face feels spheres.
+        assert_eq!(line(Vec3::y()).beside(&place, &out, 1.0), Vec3::zeros());
+        // Nearer than any other place of the part, for an axis across the face.
+        let slanting = line(Vec3::new(1.0, 0.0, 1.0));
+        let distance = |place: Vec3| (place - slanting.through).cross(&slanting.along).norm();
+        let best = distance(slanting.beside(&place, &out, 0.5));
+        for step in -10..=10 {
+            let way = out.cross(&slanting.along) * 0.05 * f64::from(step);
+            assert!(best <= distance(place + way) + 1e-12, "{step}");
+        }
+    }
+}

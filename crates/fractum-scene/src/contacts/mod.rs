@@ -25,8 +25,8 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use between::Touching;
 pub use between::{ContactProbe, ParticleContact};
-use flat_faces::{FlatBodies, Poses};
 pub use flat_faces::FlatFaces;
+use flat_faces::{FlatBodies, Poses};
 pub(crate) use held_nodes::{HoldStep, hold_nodes};
 pub use node_contacts::pieces;
 pub(crate) use nodes_on_shape::Candidate;

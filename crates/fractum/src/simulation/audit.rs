@@ -354,28 +354,36 @@ const AT_BORDERS: f64 = 0.2;
 const MOSTLY_SINGLE: f64 = 0.5;
 const VISIBLY_SINGLE: f64 = 0.05;
 
-/// Expressions of probes that were infinite, or had no value at any instant, though all that they take had good ones.
+/// Probes that had no value at any instant, or were infinite: of expressions those for which all that they take had good ones.
 fn undefined_probes(case: &Case, recorder: &Recorder) -> Vec<Warning> {
     let summaries = probes(case, recorder);
     let is_good =
         |probe: &Probe| summaries.get(&probe.name.value).is_none_or(|of| of.min.is_finite() && of.max.is_finite());
     let is_undefined = |probe: &&Probe| match &probe.kind {
-        ProbeKind::Expression(expression) if !is_good(probe) => expression.inputs.iter().all(|input| match input {
+        _ if is_good(probe) => false,
+        ProbeKind::Expression(expression) => expression.inputs.iter().all(|input| match input {
             ProbeInput::Probe { probe, .. } => is_good(&case.probes[*probe]),
             ProbeInput::Time => true,
         }),
-        _ => false,
+        _ => true,
     };
     let told = |probe: &Probe| {
         let name = &probe.name.value;
-        let text = match summaries[name].max.is_nan() {
-            true => {
-                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants"
-            }
-            false => "it is infinite at an instant: something is divided by zero",
+        let (text, remedy) = match (&probe.kind, summaries[name].max.is_nan()) {
+            (ProbeKind::Expression(_), true) => (
+                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants",
+                "look at the values that its expression takes (history.csv)",
+            ),
+            (ProbeKind::Expression(_), false) => (
+                "it is infinite at an instant: something is divided by zero",
+                "look at the values that its expression takes (history.csv)",
+            ),
+            _ => (
+                "it had no value at any instant: what it looks at was never there, such as a crack of enough bonds",
+                "look at what the run came to (pictures, counts in summary.json)",
+            ),
         };
-        let found = Warning::new(Code::Undefined, format!("probe \"{name}\""), text);
-        found.remedy("look at the values that its expression takes (history.csv)")
+        Warning::new(Code::Undefined, format!("probe \"{name}\""), text).remedy(remedy)
     };
     case.probes.iter().filter(is_undefined).map(told).collect()
 }
