@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use fractum_dem::{BeamSection, Particles};
+use fractum_dem::{BeamSection, Clumps, Particles};
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, RateCurves, Solid, Viscosity, cracks, motion};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
@@ -196,8 +196,17 @@ fn lattice() -> Bonded {
     let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
     let section = BeamSection::new(1e3, 0.3).unwrap();
     let (law, shares) = (section.into(), Vec::new());
-    let part =
-        BondedPart { name: "bar".into(), particles, pairs, law, shares, density: 1.0, fraction: 1.0, fracture: None };
+    let part = BondedPart {
+        name: "bar".into(),
+        particles,
+        pairs,
+        law,
+        shares,
+        density: 1.0,
+        fraction: 1.0,
+        fracture: None,
+        clumps: Clumps::default(),
+    };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));

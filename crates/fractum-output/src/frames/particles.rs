@@ -119,6 +119,12 @@ fn particles_file(
         Field::vector("spin", &spin),
         Field::integer("body", &body),
     ];
+    let clumps = bonded.clumps().of_particles(all.len());
+    let clump: Vec<i32> = if clumps.is_empty() { Vec::new() } else { shown().map(|i| clumps[i] as i32).collect() };
+    if !clump.is_empty() {
+        // -1 for those of none.
+        point_data.push(Field::integer("clump", &clump));
+    }
     let of_bonds = stress.map(|stress| {
         let strains = bonded.strains();
         let strain: Vec<[f32; 6]> = shown().map(|i| strains[i].0.map(|e| e as f32)).collect();
