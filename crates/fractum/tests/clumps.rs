@@ -292,6 +292,60 @@ fn a_clump_in_free_flight_keeps_its_energy_and_angular_momentum() {
     assert!(residual(&found) < 1e-6, "{}", found["energy"]);
 }
 
+/// Under a roof a dumbbell hangs by both of its spheres, each with 2 π W r, or falls.
+#[test]
+fn a_clump_sticks_by_all_of_its_spheres() {
+    let weight = 2.0 * 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9 * 9.81;
+    let holds = weight / (2.0 * 2.0 * std::f64::consts::PI * 1e-3);
+    for (share, falls) in [(0.9, true), (1.1, false)] {
+        let material = format!("restitution = 0.3, work_of_adhesion = \"{} J/m^2\"", share * holds);
+        let rest = format!("{MOTION}[[loads]]\ngravity = {{ z = \"-9.81 m/s^2\" }}\n[solver]\nend = \"20 ms\"\n");
+        let body = grains("centre = [\"0 mm\", \"0 mm\", \"-1 mm\"]", &DUMBBELL);
+        let text = case(&material, &body, &rest).replace("normal = \"z\"", "normal = \"-z\"");
+        let found = run(&Workplace::new(&text), "one", "1");
+        assert_eq!(last(&found, "vz") < -1e-3, falls, "{share}: {} m/s", last(&found, "vz"));
+        assert!(residual(&found) < 1e-3, "{}", found["energy"]);
+    }
+}
+
+/// A force on one of its spheres, which is 1 mm from the centre of mass, for 1 ms.
+#[test]
+fn a_load_on_a_sphere_pushes_and_turns_its_clump() {
+    let from = "centre = [\"0 mm\", \"0 mm\", \"50 mm\"]\ngroups = { end = \"x > 0 mm\" }";
+    let rest = format!(
+        "{MOTION}[[loads]]\ngroup = \"grains.end\"\nforce = {{ z = \"1 uN\" }}\n[solver]\nend = \"1 ms\"\n[[probes]]\n\
+         name = \"work\"\nenergy = \"external\"\n"
+    );
+    let found = run(&Workplace::new(&case("friction = 0", &grains(from, &DUMBBELL), &rest)), "one", "1");
+    let mass = 2.0 * 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 1e-9;
+    let close = |probe: &str, expected: f64, tolerance: f64| {
+        let found = last(&found, probe);
+        assert!((found / expected - 1.0).abs() < tolerance, "{probe}: {found}, {expected}");
+    };
+    // Velocities are those of half a step later.
+    close("vz", 1e-9 / mass, 2e-3);
+    close("turn", -1e-12, 2e-3);
+    close("work", 0.5 * (1e-18 / mass + 1e-24 / (1.4e-6 * mass)), 2e-3);
+    assert!(residual(&found) < 1e-3, "{}", found["energy"]);
+}
+
+/// A dumbbell falls on an elastic bar with one end: solids feel its spheres, and the energies add up.
+#[test]
+fn a_clump_rebounds_from_a_solid() {
+    let from = "centre = [\"200 mm\", \"60 mm\", \"136 mm\"]\norientation = { axis = \"y\", angle = \"30 deg\" }\n\
+                initial_velocity = { z = \"-2 m/s\" }\nparticle_radius = \"20 mm\"";
+    let bar = "[mesh]\nfile = \"bar.msh\"\n[[bodies]]\nname = \"bar\"\nkind = \"solid\"\ngroup = \"body\"\nmaterial = \"stone\"\n";
+    let text = case(
+        "friction = 0.3, restitution = 0.8",
+        &format!("{bar}{}", grains(from, &DUMBBELL)),
+        "[solver]\nend = \"8 ms\"\n",
+    );
+    let text = text.replace("normal = \"z\"", "normal = \"z\"\npoint = [\"0 m\", \"0 m\", \"-1 m\"]");
+    let found = run(&Workplace::new(&format!("{text}{MOTION}")), "one", "1");
+    assert!(last(&found, "vz") > 0.1 && last(&found, "turn").abs() > 1e-3, "{}", found["probes"]);
+    assert!(residual(&found) < 1e-3, "{}", found["energy"]);
+}
+
 #[test]
 fn clumps_are_refused_beside_what_knows_single_spheres_only() {
     let from = "shape = \"box\"\nsize = [\"20 mm\", \"20 mm\", \"20 mm\"]";

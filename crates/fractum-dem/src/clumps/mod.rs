@@ -58,7 +58,9 @@ impl Clumps {
     /// - `places`: centre of mass [m], radius of the sphere around it [m] and orientation of each
     /// - `density` [kg/m³]: that of the union of the spheres of a clump
     ///
-    /// The mass of a particle is its share of the clump's, by volumes of spheres.
+    /// The mass of a particle is the one that damping of its contacts counts with: its share of the clump's by volumes of spheres, or a
+    /// third of the mass that a force at its centre meets, the mean over all directions, if that is more. Where all spheres hit at
+    /// once the shares give the restitution of the material; where small ones bear the clump it has hardly more than three contacts.
     ///
     /// # Errors
     /// Radii or a density that are not positive.
@@ -67,7 +69,7 @@ impl Clumps {
         places: &[(Vec3, f64, Rotation)],
         density: f64,
     ) -> Result<(Particles, Self), DemError> {
-        let cubes: f64 = shape.spheres().iter().map(|(_, r)| r.powi(3)).sum();
+        let seen = seen_shares(shape);
         let (mut position, mut radius, mut mass) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = Clumps::default();
         for (clump, (centre, size, turn)) in (0..).zip(places) {
@@ -77,11 +79,11 @@ impl Clumps {
             let moments = shape.inertia() * (density * scale.powi(5));
             let inertia = rotation.matrix() * moments * rotation.matrix().transpose();
             all.spheres.push([position.len() as u32, shape.spheres().len() as u32]);
-            for (at, r) in shape.spheres() {
+            for ((at, r), seen) in shape.spheres().iter().zip(&seen) {
                 let arm = rotation.matrix() * at * scale;
                 position.push(centre + arm);
                 radius.push(r * scale);
-                mass.push(own * r.powi(3) / cubes);
+                mass.push(own * seen);
                 all.owner.push(clump);
                 all.arm.push(arm);
             }
@@ -156,6 +158,18 @@ impl Clumps {
             of[run.clone()].copy_from_slice(&self.owner[*start..*start + run.len()]);
         }
         of
+    }
+
+    /// Mass of every particle [kg]; of a sphere of a clump its share by volumes of spheres, so that all of them add up.
+    pub fn masses(&self, particles: &Particles) -> Vec<f64> {
+        let mut masses = particles.mass.clone();
+        for clump in 0..self.len() {
+            let own = self.particles_of(clump);
+            let cube = |i: usize| particles.radius[i].abs().powi(3);
+            let cubes: f64 = own.clone().map(cube).sum();
+            own.for_each(|i| masses[i] = self.mass[clump] * cube(i) / cubes);
+        }
+        masses
     }
 
     /// Mass of a clump [kg].
@@ -234,5 +248,36 @@ impl Clumps {
         for of in [&mut self.motion.velocity, &mut self.motion.spin, &mut self.motion.momentum] {
             of[clump] = Vec3::zeros();
         }
+    }
+}
+
+/// Part of the mass of a clump that each of its spheres counts with in contact.
+fn seen_shares(shape: &ClumpShape) -> Vec<f64> {
+    let cubes: f64 = shape.spheres().iter().map(|(_, r)| r.powi(3)).sum();
+    let inverse = shape.inertia().try_inverse().unwrap_or_else(Mat3::zeros) * shape.volume();
+    let of = |(at, r): &(Vec3, f64)| {
+        let across = at.cross_matrix();
+        let turning = (across.transpose() * inverse * across).trace() / 3.0;
+        (r.powi(3) / cubes).max(1.0 / (3.0 * (1.0 + turning)))
+    };
+    shape.spheres().iter().map(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn spheres_count_in_contact_with_their_share_or_a_third_of_what_they_move() {
+        let two = ClumpShape::new(&[(Vec3::zeros(), 1.0), (Vec3::x() * 2.0, 1.0)]).unwrap();
+        assert!(seen_shares(&two).iter().all(|share| (share - 0.5).abs() < 1e-12));
+        // A grain with a small sphere on it, whose arm is 1: 1 + 2/3 · 1/0.4 of a sphere.
+        let small = ClumpShape::new(&[(Vec3::zeros(), 1.0), (Vec3::x(), 0.01)]).unwrap();
+        let [large, corner] = seen_shares(&small)[..] else { panic!("two of them") };
+        assert!(large > 0.999 && (corner - 1.0 / (3.0 + 5.0)).abs() < 1e-3, "{large} {corner}");
+        let place = (Vec3::zeros(), small.radius(), Rotation::identity());
+        let (particles, clumps) = Clumps::at_rest(&small, &[place], 1.0).unwrap();
+        let masses = clumps.masses(&particles);
+        assert!((masses.iter().sum::<f64>() / clumps.mass(0) - 1.0).abs() < 1e-12);
     }
 }

@@ -109,7 +109,7 @@ fn particles_file(
     let body: Vec<i32> = bodies.iter().flat_map(|(index, body)| body.range.clone().map(|_| *index)).collect();
     // What has left is not drawn.
     let radius: Vec<f64> = shown().map(|i| all.radius[i].max(0.0)).collect();
-    let mass = scalar(&all.mass);
+    let mass = scalar(&bonded.clumps().masses(all));
     let mut point_data = vec![
         Field::scalar("radius", &radius),
         Field::scalar("mass", &mass),

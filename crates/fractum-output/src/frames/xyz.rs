@@ -25,7 +25,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
     let mut text = String::new();
     // Writing to a String cannot fail.
     // Only scenes with clumps have the column; -1 for particles of none.
-    let clumps = bonded.clumps().of_particles(all.len());
+    let (clumps, mass) = (bonded.clumps().of_particles(all.len()), bonded.clumps().masses(all));
     let of_clumps = if clumps.is_empty() { "" } else { ":clump:I:1" };
     let _ = write!(text, "{}\nProperties={PROPERTIES}{of_clumps} Time=", present.len());
     push_shortest(&mut text, scene.clock.time);
@@ -50,7 +50,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
         let vectors = |of: &fractum_math::Vec3| [of.x, of.y, of.z];
         let columns = [
             &vectors(&(all.position[i] + beyond))[..],
-            &[all.radius[i], all.mass[i]],
+            &[all.radius[i], mass[i]],
             &vectors(&(all.velocity[i] + faster)),
             &vectors(&all.spin[i]),
             &[turn.x, turn.y, turn.z, turn.w],

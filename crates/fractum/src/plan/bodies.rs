@@ -63,7 +63,7 @@ impl Plan {
                         let all = &scene.bonded.particles;
                         // Those that are to come in have negative radii.
                         let radius: Vec<f64> = all.radius[part.range.clone()].iter().map(|r| r.abs()).collect();
-                        let mass = &all.mass[part.range.clone()];
+                        let mass = &scene.bonded.clumps().masses(all)[part.range.clone()];
                         let of =
                             |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
                         let what = match &loose.clump {
