@@ -85,6 +85,21 @@ fn a_clump_that_falls_flat_bounces_by_the_restitution_of_its_material() {
     assert!((clump / sphere - 1.0).abs() < 1e-9, "{clump} and {sphere} m/s");
 }
 
+/// A small sphere under a large one bears the whole clump, and counts with a third of its mass: the figures of docs/case-file.md.
+#[test]
+fn a_clump_that_falls_on_one_small_sphere_rebounds_little_faster_than_its_material() {
+    let spheres = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, -1.0, 0.2]];
+    let from = "centre = [\"0 mm\", \"0 mm\", \"1.25 mm\"]\ninitial_velocity = { z = \"-0.1 m/s\" }";
+    for (restitution, most) in [(0.3, 0.46), (0.6, 0.73), (0.9, 0.94)] {
+        let material = format!("friction = 0, restitution = {restitution}");
+        let rest = format!("{MOTION}[solver]\nend = \"4 ms\"\nsafety = 0.2\n");
+        let found = run(&Workplace::new(&case(&material, &grains(from, &spheres), &rest)), "one", "1");
+        let rebound = last(&found, "vz") / 0.1;
+        assert!(rebound > restitution && rebound < most + 5e-3, "{restitution}: {rebound}");
+        assert!(residual(&found) < 1e-3, "{}", found["energy"]);
+    }
+}
+
 /// An elastic impact without friction, at a distance d from the centre of mass: impulse J = 2 v/(1/m + d²/I), and afterwards velocity J/m − v
 /// and angular momentum J d.
 #[test]

@@ -59,8 +59,8 @@ impl Clumps {
     /// - `density` [kg/m³]: that of the union of the spheres of a clump
     ///
     /// The mass of a particle is the one that damping of its contacts counts with: its share of the clump's by volumes of spheres, or a
-    /// third of the mass that a force at its centre meets, the mean over all directions, if that is more. Where all spheres hit at
-    /// once the shares give the restitution of the material; where small ones bear the clump it has hardly more than three contacts.
+    /// third of the clump's if that is more. Where two or three equal spheres hit at once the shares give the restitution of the
+    /// material; small ones bear more than their share, as a grain of many rests on few.
     ///
     /// # Errors
     /// Radii or a density that are not positive.
@@ -69,7 +69,7 @@ impl Clumps {
         places: &[(Vec3, f64, Rotation)],
         density: f64,
     ) -> Result<(Particles, Self), DemError> {
-        let seen = seen_shares(shape);
+        let cubes: f64 = shape.spheres().iter().map(|(_, r)| r.powi(3)).sum();
         let (mut position, mut radius, mut mass) = (Vec::new(), Vec::new(), Vec::new());
         let mut all = Clumps::default();
         for (clump, (centre, size, turn)) in (0..).zip(places) {
@@ -79,11 +79,11 @@ impl Clumps {
             let moments = shape.inertia() * (density * scale.powi(5));
             let inertia = rotation.matrix() * moments * rotation.matrix().transpose();
             all.spheres.push([position.len() as u32, shape.spheres().len() as u32]);
-            for ((at, r), seen) in shape.spheres().iter().zip(&seen) {
+            for (at, r) in shape.spheres() {
                 let arm = rotation.matrix() * at * scale;
                 position.push(centre + arm);
                 radius.push(r * scale);
-                mass.push(own * seen);
+                mass.push(own * (r.powi(3) / cubes).max(LEAST_SHARE));
                 all.owner.push(clump);
                 all.arm.push(arm);
             }
@@ -251,33 +251,27 @@ impl Clumps {
     }
 }
 
-/// Part of the mass of a clump that each of its spheres counts with in contact.
-fn seen_shares(shape: &ClumpShape) -> Vec<f64> {
-    let cubes: f64 = shape.spheres().iter().map(|(_, r)| r.powi(3)).sum();
-    let inverse = shape.inertia().try_inverse().unwrap_or_else(Mat3::zeros) * shape.volume();
-    let of = |(at, r): &(Vec3, f64)| {
-        let across = at.cross_matrix();
-        let turning = (across.transpose() * inverse * across).trace() / 3.0;
-        (r.powi(3) / cubes).max(1.0 / (3.0 * (1.0 + turning)))
-    };
-    shape.spheres().iter().map(of).collect()
-}
+/// Least part of the mass of a clump that a sphere of it counts with in contact: it rests on three places.
+const LEAST_SHARE: f64 = 1.0 / 3.0;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn spheres_count_in_contact_with_their_share_or_a_third_of_what_they_move() {
-        let two = ClumpShape::new(&[(Vec3::zeros(), 1.0), (Vec3::x() * 2.0, 1.0)]).unwrap();
-        assert!(seen_shares(&two).iter().all(|share| (share - 0.5).abs() < 1e-12));
-        // A grain with a small sphere on it, whose arm is 1: 1 + 2/3 · 1/0.4 of a sphere.
-        let small = ClumpShape::new(&[(Vec3::zeros(), 1.0), (Vec3::x(), 0.01)]).unwrap();
-        let [large, corner] = seen_shares(&small)[..] else { panic!("two of them") };
-        assert!(large > 0.999 && (corner - 1.0 / (3.0 + 5.0)).abs() < 1e-3, "{large} {corner}");
-        let place = (Vec3::zeros(), small.radius(), Rotation::identity());
-        let (particles, clumps) = Clumps::at_rest(&small, &[place], 1.0).unwrap();
-        let masses = clumps.masses(&particles);
-        assert!((masses.iter().sum::<f64>() / clumps.mass(0) - 1.0).abs() < 1e-12);
+    fn spheres_count_in_contact_with_their_share_or_a_third_of_the_clump() {
+        let shares = |spheres: &[(Vec3, f64)]| {
+            let shape = ClumpShape::new(spheres).unwrap();
+            let place = (Vec3::zeros(), shape.radius(), Rotation::identity());
+            let (particles, clumps) = Clumps::at_rest(&shape, &[place], 1.0).unwrap();
+            let whole: f64 = clumps.masses(&particles).iter().sum();
+            assert!((whole / clumps.mass(0) - 1.0).abs() < 1e-12);
+            particles.mass.iter().map(|mass| mass / clumps.mass(0)).collect::<Vec<f64>>()
+        };
+        let close = |found: Vec<f64>, expected: [f64; 2]| {
+            assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-12), "{found:?}");
+        };
+        close(shares(&[(Vec3::zeros(), 1.0), (Vec3::x() * 2.0, 1.0)]), [0.5, 0.5]);
+        close(shares(&[(Vec3::zeros(), 1.0), (Vec3::x(), 0.5)]), [8.0 / 9.0, 1.0 / 3.0]);
     }
 }
