@@ -71,6 +71,11 @@ impl ClumpShape {
         let centre = if let [(centre, _)] = spheres { *centre } else { moments.first / moments.volume };
         let second = moments.second - centre * centre.transpose() * moments.volume;
         let inertia = Mat3::identity() * second.trace() - second;
+        if !moments.volume.is_normal()
+            || inertia.try_inverse().is_none_or(|inverse| inverse.iter().any(|x| !x.is_finite()))
+        {
+            return bad("has a size whose volume or moments of inertia are no numbers".to_owned());
+        }
         let spheres: Vec<(Vec3, f64)> = spheres.iter().map(|(x, r)| (x - centre, *r)).collect();
         let radius = spheres.iter().map(|(x, r)| x.norm() + r).fold(0.0, f64::max);
         Ok(ClumpShape { volume: moments.volume, inertia, radius, spheres })
@@ -234,5 +239,6 @@ mod tests {
         assert!(said(&[(Vec3::zeros(), 1.0), (Vec3::x() * 2.5, 1.0)]).contains("sphere 1 touches none"));
         assert!(said(&[(Vec3::zeros(), 1.0), (Vec3::zeros(), 1.0)]).contains("sphere 1 twice"));
         assert!(said(&vec![(Vec3::zeros(), 1.0); 101]).contains("1 to 100"));
+        assert!(said(&[(Vec3::zeros(), 1e120)]).contains("no numbers"));
     }
 }
