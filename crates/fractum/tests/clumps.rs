@@ -5,6 +5,7 @@ use std::fs;
 use serde_json::Value;
 
 use crate::common::{Workplace, files_below, history, resumed, run};
+use crate::ranks::{on_ranks, options};
 
 /// A material, a floor at z = 0 and what is put in.
 fn case(material: &str, bodies: &str, rest: &str) -> String {
@@ -282,6 +283,8 @@ fn a_heap_of_clumps_has_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     let clump = |line: &str| line.split_whitespace().next_back().unwrap().parse::<i32>().unwrap();
     let of: Vec<i32> = text.lines().skip(2).map(clump).collect();
     assert!(text.contains(":clump:I:1") && of[..6] == [0, 0, 0, 1, 1, 1] && of[243] == 81, "{of:?}");
+    let loose = fs::read(place.path("one/particles/loose-00000.vtp")).unwrap();
+    assert!(String::from_utf8_lossy(&loose).contains("Name=\"clump\""));
     let two = run(&place, "two", "2");
     assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));
     let resumed = resumed(&place, "two");
@@ -396,4 +399,8 @@ fn clumps_are_refused_beside_what_knows_single_spheres_only() {
         assert_eq!(ended.code, Some(1), "{new}: {}", ended.stdout);
         assert!(ended.stderr.contains(words), "{new}: {}", ended.stderr);
     }
+    let place = Workplace::new(&text);
+    let shared = on_ranks(&place, 2, &options(&place, "shared"));
+    let words = shared[0].as_ref().unwrap_err().to_string();
+    assert!(words.contains("clumps of spheres cannot be run by several"), "{words}");
 }
