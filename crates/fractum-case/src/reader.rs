@@ -6,7 +6,7 @@ mod reading;
 pub(super) mod vectors;
 
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -40,6 +40,8 @@ pub(super) struct Reader {
     diagnostics: RefCell<Vec<Diagnostic>>,
     /// How many of them are errors.
     mistakes: Cell<usize>,
+    /// Keys of the tables that they lie below.
+    wrong_tables: RefCell<HashSet<String>>,
     /// Paths of keys that were probably meant by unknown ones: these are not missing too.
     meant: RefCell<BTreeSet<String>>,
 }
@@ -69,6 +71,7 @@ impl Reader {
             parameters: RefCell::default(),
             tables: RefCell::default(),
             diagnostics: RefCell::default(),
+            wrong_tables: RefCell::default(),
             mistakes: Cell::default(),
             meant: RefCell::default(),
         }
@@ -76,7 +79,12 @@ impl Reader {
 
     /// Notes a mistake or a doubt.
     pub(super) fn note(&self, diagnostic: Diagnostic) {
-        self.mistakes.set(self.mistakes.get() + usize::from(diagnostic.severity == Severity::Error));
+        if diagnostic.severity == Severity::Error {
+            self.mistakes.set(self.mistakes.get() + 1);
+            let key = diagnostic.place.as_ref().map_or("", |place| &place.key);
+            let tables = key.match_indices('.').map(|(end, _)| key[..end].to_string());
+            self.wrong_tables.borrow_mut().extend(tables);
+        }
         self.diagnostics.borrow_mut().push(diagnostic);
     }
 
@@ -95,11 +103,7 @@ impl Reader {
 
     /// Whether something below the key of a table is wrong; the whole case is none.
     fn has_mistake_below(&self, key: &str) -> bool {
-        let is_below = |place: &Option<Place>| {
-            place.as_ref().and_then(|place| place.key.strip_prefix(key)).is_some_and(|rest| rest.starts_with('.'))
-        };
-        let diagnostics = self.diagnostics.borrow();
-        !key.is_empty() && diagnostics.iter().any(|note| note.severity == Severity::Error && is_below(&note.place))
+        self.wrong_tables.borrow().contains(key)
     }
 
     /// Whether so much is wrong that suggestions help no more.

@@ -129,7 +129,7 @@ fn beads_that_stick_have_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     let beads = Beads { speed: 0.01, end: 0.01, ..Beads::STILL };
     let place = beads.place(&[[0.0, 0.0, -2e-3, 2e-3], [4e-3, 0.0, -2.02e-3, 2e-3], [2e-3, 0.0, -5.47e-3, 2e-3]]);
     let case = fs::read_to_string(place.path("case.toml")).unwrap();
-    fs::write(place.path("case.toml"), case + "[output]\ncheckpoint = { every = \"1 ms\" }\n").unwrap();
+    fs::write(place.path("case.toml"), case + "[output]\ncheckpoint = { steps = 900 }\n").unwrap();
     let one = run(&place, "one", "1");
     let two = run(&place, "two", "2");
     assert_eq!((&two["state_hash"], &two["probes"]), (&one["state_hash"], &one["probes"]));

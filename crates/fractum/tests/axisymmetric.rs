@@ -62,7 +62,7 @@ reaction = { group = "y+", along = "y" }
 [output]
 fields = { every = "0.1 ms" }
 history = { every = "10 us" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 1200 }
 "#;
 
 fn place() -> Workplace {

@@ -62,7 +62,7 @@ energy = "bond_bending"
 [output]
 fields = { every = "1 us" }
 history = { every = "20 ns" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 170 }
 "#;
 
 fn log(place: &Workplace, folder: &str) -> String {

@@ -53,7 +53,7 @@ count = "broken_bonds"
 [output]
 fields = { every = "0.1 us" }
 history = { every = "5 ns" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 20 }
 "#;
 
 #[test]

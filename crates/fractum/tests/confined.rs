@@ -251,7 +251,7 @@ fn the_pressure_after_shut_in_falls_to_the_closing_stress() {
 #[test]
 fn a_crack_under_in_situ_stress_has_the_same_bits_on_any_threads_and_after_a_resume() {
     let text = CONFINED.replace("duration/60", "duration/20");
-    let place = of_gallery(&format!("{text}\n[output]\ncheckpoint = {{ every = \"1 ms\" }}\n"));
+    let place = of_gallery(&format!("{text}\n[output]\ncheckpoint = {{ steps = 12 }}\n"));
     let one = run(&place, "one", "1");
     for threads in ["2", "7"] {
         assert_eq!(one["state_hash"], run(&place, threads, threads)["state_hash"]);

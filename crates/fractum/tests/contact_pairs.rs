@@ -48,7 +48,7 @@ end = "END"
 safety = SAFETY
 initial_overlap = "keep"
 [output]
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 4000 }
 [[probes]]
 name = "speed_a"
 velocity = { group = "a", along = "x" }

@@ -102,7 +102,7 @@ heat = "expansion_work"
 
 [output]
 history = { every = "0.1 ms" }
-checkpoint = { every = "2 ms" }
+checkpoint = { steps = 860 }
 "#;
 
 /// The table that bodies need to conduct.
@@ -175,7 +175,7 @@ end = "2000 s"
     let [before, after] = [HOT.find("[[heat.conditions]]"), HOT.find("[[probes]]")].map(Option::unwrap);
     let text = [&HOT[..before], steps, "\n", conditions, &HOT[after..]].concat();
     text.replace("history = { every = \"0.1 ms\" }", "history = { every = \"100 s\" }\nfields = { every = \"500 s\" }")
-        .replace("every = \"2 ms\"", "every = \"1 ms\"")
+        .replace("steps = 860", "steps = 600")
         .replace("reaction = { group = \"x+\", along = \"-x\" }", "count = \"bonds\"")
 }
 
@@ -362,7 +362,7 @@ name = "tip"
 displacement = { where = "x > 59.99 mm", along = "y" }
 
 [output]
-checkpoint = { every = "1 us" }
+checkpoint = { steps = 12 }
 "#;
 
 /// Two layers of 2 mm, 60 mm long, that have nodes in common.

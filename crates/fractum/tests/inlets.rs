@@ -42,7 +42,7 @@ end = "END"
 [output]
 history = { every = "1 ms" }
 fields = { every = "20 ms", xyz = true }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 7000 }
 "#;
 
 /// A floor with walls around it, wide enough for a heap.

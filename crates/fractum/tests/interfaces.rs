@@ -9,7 +9,7 @@ const BLOCK: &str = include_str!("../../../cases/cement/block.toml");
 
 /// A case that saves its state as often as it can: `every` is wall time.
 fn saving(text: &str) -> Workplace {
-    Workplace::new(&text.replace("[output]", "[output]\ncheckpoint = { every = \"25 us\" }"))
+    Workplace::new(&text.replace("[output]", "[output]\ncheckpoint = { steps = 170 }"))
 }
 
 fn assert_same_on_threads_and_after_a_checkpoint(place: &Workplace, one: &serde_json::Value) {

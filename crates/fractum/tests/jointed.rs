@@ -49,7 +49,7 @@ stress = { where = "x < 100 m", component = "xx" }
 
 [output]
 fields = { every = "1 ms" }
-checkpoint = { every = "0.2 ms" }
+checkpoint = { steps = 150 }
 "#;
 
 /// What keeps a body in the plane, and one in space, from moving as a whole, and does not strain it.

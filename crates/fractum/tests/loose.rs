@@ -89,7 +89,7 @@ count = "contacts"
 [output]
 history = { every = "1 ms" }
 fields = { every = "50 ms" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 3000 }
 "#;
 
 /// A thin upright wedge about the axis, closed.

@@ -38,7 +38,7 @@ name = "speed"
 velocity = { group = "grains", along = "z" }
 [output]
 fields = { every = "10 ms", xyz = true }
-checkpoint = { every = "5 ms" }
+checkpoint = { steps = 900 }
 "#;
 
 const FILES: [(&str, &str); 5] = [

@@ -265,7 +265,7 @@ momentum = { along = "x" }
 [output]
 history = { every = "20 us" }
 fields = { every = "0.1 s", xyz = true }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 11000 }
 "#;
 
 /// Σ V σ : L Δt over rows of volume, stresses xx yy zz xy xz and stretches along x, y, z [J].

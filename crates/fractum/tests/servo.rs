@@ -68,7 +68,7 @@ expression = "at(pressure, 0.17 s)"
 [output]
 history = { every = "1 ms" }
 fields = { every = "50 ms" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 23000 }
 "#;
 
 fn oedometer(pressure: &str, seed: &str) -> String {

@@ -51,7 +51,7 @@ reaction = { group = "right", along = "x" }
 [output]
 fields = { every = "2 us" }
 history = { every = "50 ns" }
-checkpoint = { every = "1 ms" }
+checkpoint = { steps = 170 }
 "#;
 
 fn place(case: &str) -> Workplace {

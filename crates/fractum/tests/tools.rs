@@ -121,7 +121,7 @@ energy = "kinetic"
 name = "rise"
 displacement = { group = "bead", along = "z" }
 [output]
-checkpoint = { every = "10 ms" }
+checkpoint = { steps = 3000 }
 "#;
 
 #[test]

@@ -225,7 +225,7 @@ fn contacts_of_a_column_of_beads_bear_what_lies_above() {
 #[test]
 fn files_of_contacts_have_the_same_bits_on_any_threads_and_after_a_checkpoint() {
     let case = COLUMN.replace("end = \"0.2 s\"", "end = \"10 ms\"").replace("every = \"10 ms\"", "every = \"0.2 ms\"");
-    let place = Workplace::new(&(case + "checkpoint = { every = \"1 ms\" }\n"));
+    let place = Workplace::new(&(case + "checkpoint = { steps = 1400 }\n"));
     fs::write(place.path("beads.csv"), "-0.01,0,0.01,0.01\n0.01,0,0.01,0.01\n0,0,0.0275,0.01\n").unwrap();
     let of = |folder: &str| {
         let files = files_below(&place.path(folder).join("contacts"), ".vtp");

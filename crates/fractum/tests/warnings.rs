@@ -92,7 +92,7 @@ fn every_place_shows_the_same_warnings_once() {
 
 #[test]
 fn a_resumed_run_has_the_warnings_of_the_steps_before_it() {
-    let place = Workplace::new(&FROZEN.replace("[output]\n", "[output]\ncheckpoint = { every = \"1 ms\" }\n"));
+    let place = Workplace::new(&FROZEN.replace("[output]\n", "[output]\ncheckpoint = { steps = 650 }\n"));
     run(&place, "out", "1");
     let before = listed(&place, "out");
     assert!(before.iter().any(|[code, ..]| code == "below-zero"), "{before:?}");

@@ -196,6 +196,8 @@ fn risky_settings_are_warned_of() {
     assert_eq!(warned(&format!("{SMALL}[output.fields]\nevery = 1\n")), ["output.fields.every"]);
     let often = |every: &str| format!("{SMALL}[output.checkpoint]\nevery = \"{every}\"\n");
     assert_eq!(warned(&often("25 us")), ["output.checkpoint.every"]);
+    let by_steps = parse(&format!("{SMALL}[output.checkpoint]\nsteps = 500\n"), &[]).unwrap();
+    assert_eq!((by_steps.output.checkpoint_every, by_steps.output.checkpoint_steps), (600.0, Some(500)));
     assert_eq!(warned(&often("1 min")), Vec::<String>::new());
     let jump = format!("{SMALL}[[supports]]\ngroup = \"a\"\ndisplacement.x = \"1 mm\"\n");
     assert_eq!(warned(&jump), ["supports[0].displacement.x"]);

@@ -284,6 +284,8 @@ pub(crate) fn run(place: &Workplace, folder: &str, threads: &str) -> Value {
 }
 
 /// Resumes a run from its middle with one thread, as if its last state had been lost; its summary.
+///
+/// The case saves its state after some `output.checkpoint.steps`: that before the last is then the same on any machine.
 pub(crate) fn resumed(place: &Workplace, folder: &str) -> Value {
     let results = place.path(folder);
     let (steps, files) = (checkpoints(&results), files_below(&results.join("checkpoint"), ".fck"));
