@@ -151,6 +151,7 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
             frame: *frame,
             species: species.as_deref(),
         }),
+        LooseSource::Single { centre, radius } => LooseFill::Single { centre: *centre, radius: *radius },
         LooseSource::Cloud { region, radius, dispersion, count, seed } => LooseFill::Cloud {
             region: &region.value,
             radius: *radius,
@@ -163,7 +164,8 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
         }
         LooseSource::Inlet { stream, .. } => LooseFill::Stream(stream),
     };
-    LooseRequest { source, density: material.density, young_modulus: material.young_modulus }
+    let clump = loose.clump.as_ref().map(|clump| &clump.value);
+    LooseRequest { source, density: material.density, young_modulus: material.young_modulus, clump }
 }
 
 /// A fault with its place: where the case says what it is about.

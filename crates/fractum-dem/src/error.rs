@@ -41,6 +41,12 @@ pub enum DemError {
         /// The value.
         value: f64,
     },
+    /// Spheres that make no rigid grain.
+    #[error("{reason}")]
+    BadClump {
+        /// What is wrong, to be read after "the clump".
+        reason: String,
+    },
     /// A strength, angle or fraction of a criterion that is impossible.
     #[error("{what} {value}; expected {expected}")]
     BadCriterion {

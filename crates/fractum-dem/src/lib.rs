@@ -53,6 +53,7 @@
 
 mod bond;
 mod cells;
+mod clumps;
 mod error;
 mod fracture;
 mod measure;
@@ -60,6 +61,7 @@ mod particles;
 mod statics;
 
 pub use bond::*;
+pub use clumps::{CLUMP_SPHERES, ClumpMotion, ClumpShape, Clumps};
 pub use error::DemError;
 pub use fractum_kernels::lanes;
 pub use fracture::{

@@ -1,8 +1,8 @@
 //! What is asked of bodies of particles: a shape or a file, a material, and how bonds are made.
 
 use fractum_calibrate::Micro;
-use fractum_dem::{FractureCriterion, LocalBond};
-use fractum_math::Vec3;
+use fractum_dem::{ClumpShape, FractureCriterion, LocalBond};
+use fractum_math::{Rotation, Vec3};
 use fractum_pack::{Arrangement, Convention, Domain, Grading, Sizes};
 
 /// A bonded body to be made.
@@ -101,6 +101,26 @@ pub struct LooseRequest<'a> {
     pub density: f64,
     /// Young's modulus [Pa], > 0.
     pub young_modulus: f64,
+    /// What each of them is, where it is no single sphere.
+    pub clump: Option<&'a Clump>,
+}
+
+/// Rigid grains of several spheres in the place of single ones: each fills the sphere around its centre of mass whose radius is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clump {
+    /// Its spheres.
+    pub shape: ClumpShape,
+    /// How the grains are turned from the frame of the shape.
+    pub turn: Turn,
+}
+
+/// How grains are turned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Turn {
+    /// Each by chance, of this seed.
+    ByChance(u64),
+    /// All of them alike.
+    By(Rotation),
 }
 
 /// What is taken of a file of particles.
@@ -121,6 +141,13 @@ pub struct ParticleFile<'a> {
 /// Where loose particles come from.
 #[derive(Clone, Copy, Debug)]
 pub enum LooseFill<'a> {
+    /// One particle.
+    Single {
+        /// Its centre [m].
+        centre: Vec3,
+        /// Its radius [m], > 0.
+        radius: f64,
+    },
     /// A file of particles.
     File(ParticleFile<'a>),
     /// A cloud that fills a region loosely: no two touch.

@@ -1,6 +1,6 @@
 //! A body of particles, ready to be put into a scene.
 
-use fractum_dem::{AnyBondLaw, Particles};
+use fractum_dem::{AnyBondLaw, Clumps, Particles};
 use fractum_math::Vec3;
 use fractum_pack::Domain;
 use fractum_scene::{Arrivals, BondFracture};
@@ -30,6 +30,8 @@ pub struct PreparedBody {
     pub fracture: Option<BondFracture>,
     /// When they come into the run, and where; all are there from the start where there is nothing.
     pub arrivals: Option<Arrivals>,
+    /// Rigid grains that the particles are spheres of.
+    pub clumps: Clumps,
     /// Tetrahedra of the mesh that it takes the place of.
     pub replaced: Vec<u32>,
 }

@@ -9,6 +9,7 @@ use std::time::Instant;
 use fractum_calibrate::{
     Beams, BondedMaterial, CalibrateError, Sample, prepare, prepare_sample, suitable_coordination,
 };
+use fractum_dem::Clumps;
 use fractum_mesh::{Mesh, topology};
 use fractum_output::warning::Code;
 use fractum_pack::{
@@ -209,6 +210,7 @@ impl Maker<'_> {
             walls: made.sample.packing.walls,
             domain: Some(made.sample.packing.domain),
             arrivals: None,
+            clumps: Clumps::default(),
             replaced: region.map_or_else(Vec::new, |region| region.elements),
         };
         Ok(MadeBody { body, report, doubts, timing: Some(timing), read: own.read })

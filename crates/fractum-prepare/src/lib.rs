@@ -12,7 +12,7 @@
 //! use fractum_prepare::{LooseFill, LooseRequest, Region, prepare_loose};
 //! let region = Region::Box { point: Vec3::zeros(), size: Vec3::repeat(1.0) };
 //! let source = LooseFill::Cloud { region: &region, radius: 0.1, dispersion: 0.0, count: Some(20), seed: 1 };
-//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9 }).unwrap().body;
+//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9, clump: None }).unwrap().body;
 //! assert_eq!((made.particles.len(), made.pairs.len()), (20, 0));
 //! ```
 
@@ -27,8 +27,9 @@ mod particle_file;
 mod region;
 
 pub use asked::{
-    Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Doubt, Fault, InterfaceArea, Interfaces,
-    LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Rate, Region, Shape, Stream, graded_count,
+    Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Clump, Doubt, Fault, InterfaceArea,
+    Interfaces, LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Rate, Region, Shape, Stream, Turn,
+    graded_count,
 };
 pub use body::PreparedBody;
 pub use bonded::{

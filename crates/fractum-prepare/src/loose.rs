@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use fractum_dem::{BeamSection, Particles};
-use fractum_math::{Vec3, sphere_volume};
-use fractum_pack::{Grading, cloud, insert, place_in};
+use fractum_dem::{BeamSection, Clumps, Particles};
+use fractum_math::{Rotation, Vec3, sphere_volume};
+use fractum_pack::{Grading, cloud, insert, orientations, place_in};
 use fractum_scene::Arrivals;
 
-use crate::asked::{Amount, At, Fault, LooseFill, LooseRequest, Rate, Region, Stream, graded_count};
+use crate::asked::{Amount, At, Clump, Fault, LooseFill, LooseRequest, Rate, Region, Stream, Turn, graded_count};
 use crate::body::PreparedBody;
 use crate::particle_file;
 
@@ -30,6 +30,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
             let found = file.insert(particle_file::read(&of)?);
             (std::mem::take(&mut found.position), found.radius.clone(), At::Source)
         }
+        LooseFill::Single { centre, radius } => (vec![centre], vec![radius], At::Body),
         LooseFill::Cloud { region, radius, dispersion, count, seed } => {
             let most = count.map_or(usize::MAX, |count| count as usize);
             let (centres, radii) = fill(region, radius, dispersion, most, seed);
@@ -59,10 +60,23 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
             (centres, radii, At::Shape)
         }
     };
-    let volume: f64 = radius.iter().map(|r| sphere_volume(*r)).sum();
-    let mut particles =
-        Particles::at_rest(position, radius, volume * asked.density).map_err(|error| Fault::new(at, error))?;
-    if let Some(found) = &mut file {
+    let grains = position.len();
+    let (mut particles, mut clumps) = match asked.clump {
+        Some(clump) => {
+            let places = clump_places(clump, position, radius);
+            Clumps::at_rest(&clump.shape, &places, asked.density).map_err(|error| Fault::new(at, error))?
+        }
+        None => {
+            let mass = radius.iter().map(|r| sphere_volume(*r)).sum::<f64>() * asked.density;
+            let particles = Particles::at_rest(position, radius, mass).map_err(|error| Fault::new(at, error))?;
+            (particles, Clumps::default())
+        }
+    };
+    if let Some(found) = file.as_ref().filter(|_| !clumps.is_empty()) {
+        let of = |all: &[Vec3], grain: usize| all.get(grain).copied().unwrap_or_else(Vec3::zeros);
+        (0..grains).for_each(|grain| clumps.set_motion(grain, of(&found.velocity, grain), of(&found.spin, grain)));
+        clumps.start(&mut particles);
+    } else if let Some(found) = &mut file {
         let motions = [(&mut particles.velocity, &mut found.velocity), (&mut particles.spin, &mut found.spin)];
         for (own, given) in motions.into_iter().filter(|(_, given)| !given.is_empty()) {
             *own = std::mem::take(given);
@@ -83,6 +97,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         fraction: 1.0,
         fracture: None,
         arrivals,
+        clumps,
         replaced: Vec::new(),
     };
     let read = file.map(|file| match file.bonds.len() {
@@ -90,6 +105,16 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         count => format!("{}; without its {count} bonds", file.told()),
     });
     Ok(MadeParticles { body, read })
+}
+
+/// Centre of mass, radius of the sphere around it [m] and orientation of each grain.
+fn clump_places(clump: &Clump, centres: Vec<Vec3>, radii: Vec<f64>) -> Vec<(Vec3, f64, Rotation)> {
+    let turns = match clump.turn {
+        // Sizes and places have numbers of their own.
+        Turn::ByChance(seed) => orientations(centres.len(), seed.wrapping_add(1 << 40)),
+        Turn::By(turn) => vec![turn; centres.len()],
+    };
+    centres.into_iter().zip(radii).zip(turns).map(|((centre, radius), turn)| (centre, radius, turn)).collect()
 }
 
 /// Particles that may be asked for.

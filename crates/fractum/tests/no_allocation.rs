@@ -4,15 +4,15 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use fractum_dem::{BeamSection, Particles};
+use fractum_dem::{BeamSection, ClumpShape, Clumps, Particles};
 use fractum_fem::{Body, DamageLaw, Elastic, ElementKind, Kinematics, RateCurves, Solid, Viscosity, cracks, motion};
 use fractum_math::{Rotation, Vec3};
 use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
-    Bonded, BondedPart, ContactParameters, Contacts, Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Scene,
-    SceneSettings, SolidSurface, Support, Supports, TimeStepSettings,
+    Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, ElasticMaterial, Gravity, Load, Loads, Motion,
+    NodalForce, NodesOnShape, Scene, SceneSettings, SolidSurface, Support, Supports, TimeStepSettings,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -196,8 +196,17 @@ fn lattice() -> Bonded {
     let particles = Particles::at_rest(position.clone(), vec![0.5; count], count as f64).unwrap();
     let section = BeamSection::new(1e3, 0.3).unwrap();
     let (law, shares) = (section.into(), Vec::new());
-    let part =
-        BondedPart { name: "bar".into(), particles, pairs, law, shares, density: 1.0, fraction: 1.0, fracture: None };
+    let part = BondedPart {
+        name: "bar".into(),
+        particles,
+        pairs,
+        law,
+        shares,
+        density: 1.0,
+        fraction: 1.0,
+        fracture: None,
+        clumps: Clumps::default(),
+    };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     let end = |x: f64| (0..count as u32).filter(|&i| site(i as usize).x == x).collect::<Vec<u32>>();
     let pull = Motion::Velocity(Arc::new(|_, _| 1e-3));
@@ -206,6 +215,32 @@ fn lattice() -> Bonded {
     let force = Load::Nodal(NodalForce { points: vec![(150, 1.0)], axis: 1, value: Arc::new(|t, _| t) });
     bonded.set_loads(vec![force, Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) })]);
     bonded
+}
+
+/// Dumbbells that lie side by side under gravity, pressed a little.
+fn clumps() -> Scene {
+    let shape = ClumpShape::new(&[(Vec3::zeros(), 0.5), (Vec3::x() * 0.8, 0.5)]).unwrap();
+    let place = |i: usize| {
+        let at = Vec3::new((i % 20) as f64 * 1.85, (i / 20 % 10) as f64 * 0.999, (i / 200) as f64 * 0.999);
+        (at, shape.radius(), Rotation::identity())
+    };
+    let places: Vec<_> = (0..1000).map(place).collect();
+    let (particles, clumps) = Clumps::at_rest(&shape, &places, 1.0).unwrap();
+    let law = BeamSection::new(1e3, 0.3).unwrap().into();
+    let (pairs, shares, name) = (Vec::new(), Vec::new(), "grains".into());
+    let part = BondedPart { name, particles, pairs, law, shares, density: 1.0, fraction: 1.0, fracture: None, clumps };
+    let mut bonded = Bonded::new(vec![part]).unwrap();
+    bonded.set_loads(vec![Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) })]);
+    let material = ContactMaterial {
+        elastic: ElasticMaterial { young_modulus: 1e3, poisson_ratio: 0.2 },
+        density: 1.0,
+        surface: ContactParameters::default(),
+        work_of_adhesion: 0.0,
+    };
+    let contacts = Contacts::new(&bonded, vec![material], Vec::new(), Vec::new(), Vec::new());
+    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new())
+        .with_bonded(bonded)
+        .with_contacts(contacts, &[])
 }
 
 /// Requests for memory in 100 steps, after 50 that warm up; the queues of the threads grow in these.
@@ -225,6 +260,10 @@ fn requests(scene: &mut Scene) -> usize {
 fn a_warm_step_allocates_nothing() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     pool.install(|| {
+        let mut scene = clumps();
+        assert_eq!(requests(&mut scene), 0, "clumps in contact");
+        assert!(scene.counts().contacts > 100, "{}", scene.counts().contacts);
+
         let (nodes, plain) = block();
         let corotational = Body { kinematics: Kinematics::Corotational, ..plain.clone() };
         let smoothed = plain.clone().smoothed();

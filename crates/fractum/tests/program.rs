@@ -8,6 +8,7 @@ mod axisymmetric;
 mod bonded;
 mod book;
 mod breaking;
+mod clumps;
 mod confined;
 mod contact_pairs;
 mod corpus;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use fractum_dem::Particles;
+use fractum_dem::{Clumps, Particles};
 use fractum_math::Vec3;
 use fractum_output::warning::Code;
 use fractum_pack::Domain;
@@ -42,7 +42,7 @@ impl Context<'_> {
             let count = made.particles.len() as u32;
             let motion = initial_motion(initial_velocity);
             if let Some(motion) = &motion {
-                set_motion(&mut made.particles, motion);
+                set_motion(&mut made.particles, &mut made.clumps, motion);
             }
             if let Some(arrivals) = made.arrivals.take() {
                 let motion: EntryMotion = match motion {
@@ -78,6 +78,7 @@ impl Context<'_> {
                 density: case.materials[material].density,
                 fraction: made.fraction,
                 fracture: made.fracture,
+                clumps: made.clumps,
             });
             start += count;
         }
@@ -201,8 +202,16 @@ fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [
     })
 }
 
-/// Gives particles the motion of their places.
-fn set_motion(particles: &mut Particles, motion: &impl Fn(&Vec3, f64) -> [Vec3; 2]) {
+/// Gives particles the motion of their places, and clumps that of their centres of mass.
+fn set_motion(particles: &mut Particles, clumps: &mut Clumps, motion: &impl Fn(&Vec3, f64) -> [Vec3; 2]) {
+    for clump in 0..clumps.len() {
+        let [velocity, spin] = motion(&clumps.motion.position[clump], clumps.radius(clump, particles));
+        clumps.set_motion(clump, velocity, spin);
+    }
+    if !clumps.is_empty() {
+        clumps.start(particles);
+        return;
+    }
     for i in 0..particles.len() {
         [particles.velocity[i], particles.spin[i]] = motion(&particles.position[i], particles.radius[i]);
     }

@@ -6,6 +6,7 @@ mod axisymmetric;
 mod bodies;
 mod body_doubts;
 mod bonded;
+mod clumps;
 mod conditions;
 mod contact_pairs;
 mod contacts;

@@ -7,7 +7,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Domain, Scene};
 
-use super::{Context, inlets, interfaces, liquid, periodic, rate};
+use super::{Context, clumps, inlets, interfaces, liquid, periodic, rate};
 use crate::measure::ContactForce;
 use crate::model::{
     Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape,
@@ -28,6 +28,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_contact_probes(context);
     check_heat_probes(context);
     context.check_subcycling();
+    clumps::check(context);
     inlets::check(context);
     interfaces::check(context);
     liquid::check(context);

@@ -1,7 +1,8 @@
-//! Loose particles: spheres that nothing joins.
+//! Loose particles: spheres that nothing joins, or rigid grains of several.
 
+use fractum_math::Vec3;
 use fractum_pack::Grading;
-use fractum_prepare::{Amount, Region, Stream};
+use fractum_prepare::{Amount, Clump, Region, Stream};
 
 use super::FileContent;
 use crate::{Field, Place, Spanned};
@@ -13,6 +14,8 @@ pub struct LooseBody {
     pub material: usize,
     /// Where they come from.
     pub source: LooseSource,
+    /// What each of them is, where it is no single sphere.
+    pub clump: Option<Spanned<Clump>>,
     /// Sets of its particles by name, each with a condition on the position.
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
@@ -22,6 +25,13 @@ pub struct LooseBody {
 /// Where loose particles come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LooseSource {
+    /// One particle.
+    Single {
+        /// Its centre [m], of a clump the centre of mass.
+        centre: Vec3,
+        /// Its radius [m], > 0.
+        radius: f64,
+    },
     /// A file of particles.
     File {
         /// The file.

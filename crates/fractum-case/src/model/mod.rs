@@ -33,7 +33,7 @@ use std::path::{Path, PathBuf};
 use fractum_output::expectation::Bound;
 pub use fractum_pack::Sizes;
 pub use fractum_prepare::{
-    Amount, BondLawKind, BondStrength, InterfaceArea, Interfaces, ParticleSize, Rate, Region, Stream,
+    Amount, BondLawKind, BondStrength, Clump, InterfaceArea, Interfaces, ParticleSize, Rate, Region, Stream, Turn,
 };
 use fractum_scene::EnergyKind;
 

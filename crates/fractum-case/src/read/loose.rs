@@ -1,10 +1,11 @@
 //! `[[bodies]]` of the kind `particles`.
 
-use fractum_math::Vec3;
+use fractum_dem::ClumpShape;
+use fractum_math::{Rotation, Vec3, rotation_by};
 
 use super::bonded::{DISPERSION_RANGE, file, frame, groups};
 use super::{inlet, sizes, unit};
-use crate::model::{Amount, LooseBody, LooseSource, Region, Sizes};
+use crate::model::{Amount, Clump, LooseBody, LooseSource, Region, Sizes, Turn};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{direction, initial_velocity, point};
@@ -20,16 +21,118 @@ enum Kind {
 
 /// Reads loose particles of the material at `material`, which is nothing where it is wrong.
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
-    let source = if table.has("file") { from_file(table) } else { cloud(table) };
+    let shape = clump_shape(table);
+    let turn = turn(table, shape.is_some());
+    let size = shape.as_ref().and_then(|shape| shape.as_ref()).map(|shape| shape.value.radius());
+    let has_centre = !table.has("file") && table.has("centre");
+    let source = if table.has("file") {
+        from_file(table, shape.is_some())
+    } else if has_centre {
+        single(table, size)
+    } else {
+        cloud(table, size)
+    };
     if table.has("inlet") {
         table.refuse("groups", "beside inlet: where a particle comes in is not known before");
+        table.refuse("clump", "beside inlet: only single spheres come in as time goes on");
     }
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
-    Some(LooseBody { material: material?, source: source?, groups: groups?, initial_velocity: initial_velocity? })
+    let clump = match (shape, turn?) {
+        (None, _) => None,
+        (Some(shape), turn) => {
+            let seed = table.integer("seed").or(1);
+            let by_chance = if has_centre { Turn::By(Rotation::identity()) } else { Turn::ByChance(seed) };
+            Some(shape?.map(|shape| Clump { shape, turn: turn.map_or(by_chance, Turn::By) }))
+        }
+    };
+    Some(LooseBody {
+        material: material?,
+        source: source?,
+        clump,
+        groups: groups?,
+        initial_velocity: initial_velocity?,
+    })
 }
 
-fn from_file(table: &Table<'_>) -> Option<LooseSource> {
+/// The shape of clumps: nothing without one, `Some(None)` where it is wrong.
+fn clump_shape(table: &Table<'_>) -> Option<Option<Spanned<ClumpShape>>> {
+    if !table.has("clump") {
+        return None;
+    }
+    let spheres = table.tables("clump").into_iter().map(|sphere| {
+        let at = point(&sphere, "at").required();
+        let radius = sphere.quantity("radius").positive().required();
+        sphere.finish("in a clump");
+        Some((at?, radius?))
+    });
+    // All of them are read, so that all mistakes are told.
+    let spheres: Vec<Option<(Vec3, f64)>> = spheres.collect();
+    let Some(spheres) = spheres.into_iter().collect::<Option<Vec<_>>>() else { return Some(None) };
+    let place = table.place_below("clump");
+    Some(match ClumpShape::new(&spheres) {
+        Ok(shape) => Some(Spanned::new(shape, place)),
+        Err(error) => {
+            let note = Diagnostic::error(&place, error.to_string());
+            table.reader.note(note.expected("1 to 100 spheres that touch or overlap, each of another place or size"));
+            None
+        }
+    })
+}
+
+/// How all grains are turned; `Some(None)` where nothing says it.
+fn turn(table: &Table<'_>, is_clump: bool) -> Option<Option<Rotation>> {
+    if !is_clump {
+        table.refuse("orientation", "without clump: a sphere looks the same from all sides");
+    }
+    let Some(orientation) = table.table("orientation").filter(|_| is_clump) else { return Some(None) };
+    let axis = direction(&orientation, "axis").required();
+    let angle = orientation.quantity("angle").required();
+    orientation.finish("here");
+    Some(Some(rotation_by(axis? * angle?)))
+}
+
+/// A particle at a given place.
+///
+/// - `size`: radius of its clump as it is written [m]
+fn single(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
+    for key in [
+        "shape",
+        "point",
+        "size",
+        "axis",
+        "length",
+        "radius",
+        "particles",
+        "dispersion",
+        "sizes",
+        "solid_fraction",
+        "seed",
+        "inlet",
+        "unit",
+        "velocity_unit",
+        "frame",
+        "species",
+    ] {
+        table.refuse(key, "beside centre, at which a single particle is");
+    }
+    let centre = point(table, "centre").required();
+    let radius = radius(table, size);
+    Some(LooseSource::Single { centre: centre?, radius: radius? })
+}
+
+/// Radius of particles; of clumps that of the sphere around one, as it is written if nothing says another.
+fn radius(table: &Table<'_>, size: Option<f64>) -> Option<f64> {
+    let radius = table.quantity("particle_radius").positive();
+    match size {
+        Some(size) => radius.or_if_absent(size),
+        // A clump that is wrong says enough.
+        None if table.has("clump") => radius.given(),
+        None => radius.required(),
+    }
+}
+
+fn from_file(table: &Table<'_>, is_clump: bool) -> Option<LooseSource> {
     for key in [
         "shape",
         "point",
@@ -42,10 +145,13 @@ fn from_file(table: &Table<'_>) -> Option<LooseSource> {
         "dispersion",
         "sizes",
         "solid_fraction",
-        "seed",
         "inlet",
+        "centre",
     ] {
         table.refuse(key, "beside a file of particles");
+    }
+    if !is_clump || table.has("orientation") {
+        table.refuse("seed", "beside a file of particles");
     }
     let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
     let file = file(table, "file");
@@ -64,10 +170,11 @@ fn from_file(table: &Table<'_>) -> Option<LooseSource> {
     })
 }
 
-fn cloud(table: &Table<'_>) -> Option<LooseSource> {
+fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
     if !table.has("shape") {
-        let note = Diagnostic::error(&table.place, "has neither shape nor file");
-        table.reader.note(note.expected("a shape to fill with particles, or a file of particles"));
+        let note = Diagnostic::error(&table.place, "has none of shape, file and centre");
+        let expected = "a shape to fill with particles, a file of particles, or the centre of a single one";
+        table.reader.note(note.expected(expected));
     }
     for key in ["velocity_unit", "frame", "species"] {
         table.refuse(key, "without a file of particles");
@@ -82,8 +189,7 @@ fn cloud(table: &Table<'_>) -> Option<LooseSource> {
         Some(0.0)
     } else {
         table.refuse("solid_fraction", "without sizes");
-        let radius = table.quantity("particle_radius").positive();
-        if table.has("shape") { radius.required() } else { radius.given() }
+        if table.has("shape") { radius(table, size) } else { table.quantity("particle_radius").positive().given() }
     };
     let count = optional(table, "particles", |name| {
         let count = table.integer(name).check(|count| (1..=20_000_000).contains(count), "1 to 20 million");

@@ -4,8 +4,8 @@ use fractum_pack::Arrangement;
 
 use super::{names, parameters};
 use crate::model::{
-    Body, BodyKind, Expect, JointSource, LooseSource, Material, MeshSource, NEIGHBOURS, Neighbour, PackingSource,
-    Promise, Solver, SolverKind, Verify,
+    Body, BodyKind, Clump, Expect, JointSource, LooseSource, Material, MeshSource, NEIGHBOURS, Neighbour,
+    PackingSource, Promise, Solver, SolverKind, Turn, Verify,
 };
 use crate::reader::Table;
 use crate::tree::{Node, Value};
@@ -173,7 +173,10 @@ impl Around<'_> {
                 BodyKind::Particles(loose) => match loose.source {
                     LooseSource::Cloud { seed, .. } | LooseSource::Graded { seed, .. } => Some(seed),
                     LooseSource::Inlet { ref stream, .. } => Some(stream.seed),
-                    LooseSource::File { .. } => None,
+                    LooseSource::File { .. } | LooseSource::Single { .. } => match &loose.clump {
+                        Some(Spanned { value: Clump { turn: Turn::ByChance(seed), .. }, .. }) => Some(*seed),
+                        _ => None,
+                    },
                 },
                 BodyKind::Solid(_) | BodyKind::Rigid(_) => None,
             };

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use fractum_case::build::build_scene;
 use fractum_case::parse_case;
-use fractum_dem::{BeamSection, Particles};
+use fractum_dem::{BeamSection, Clumps, Particles};
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_mesh::generate::structured_box;
@@ -181,6 +181,7 @@ step = "0.1 us"
         fraction: 0.6,
         fracture: None,
         arrivals: None,
+        clumps: Clumps::default(),
         replaced: Vec::new(),
     };
     let built =

@@ -5,7 +5,7 @@ use std::path::Path;
 use fractum_case::build::{BuiltScene, build_scene};
 use fractum_case::parse_case;
 use fractum_dem::criterion::{BeamRankine, FractureCriterion};
-use fractum_dem::{BeamSection, CrackFaces, Particles};
+use fractum_dem::{BeamSection, Clumps, CrackFaces, Particles};
 use fractum_fem::LengthReport;
 use fractum_math::Vec3;
 use fractum_math::elementary::gamma;
@@ -307,6 +307,7 @@ end = "1 ms"
             fraction: 0.6,
             fracture: Some(fracture),
             arrivals: None,
+            clumps: Clumps::default(),
             replaced: Vec::new(),
         };
         let built = build_scene(&case, &Mesh::default(), vec![made], Vec::new());

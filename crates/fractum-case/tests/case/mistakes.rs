@@ -496,7 +496,7 @@ fn each_mistake_has_one_clear_message() {
         (
             "kind = \"solid\"\ngroup = \"bar\"\nmaterial = \"steel\"",
             "kind = \"particles\"\nmaterial = \"steel\"",
-            "8:1: bodies[0] has neither shape nor file; expected a shape to fill with particles, or a file of particles",
+            "8:1: bodies[0] has none of shape, file and centre; expected a shape to fill with particles, a file of particles, or the centre of a single one",
         ),
     ];
     for (old, new, expected) in cases {

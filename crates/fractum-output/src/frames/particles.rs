@@ -109,7 +109,7 @@ fn particles_file(
     let body: Vec<i32> = bodies.iter().flat_map(|(index, body)| body.range.clone().map(|_| *index)).collect();
     // What has left is not drawn.
     let radius: Vec<f64> = shown().map(|i| all.radius[i].max(0.0)).collect();
-    let mass = scalar(&all.mass);
+    let mass = scalar(&bonded.clumps().masses(all));
     let mut point_data = vec![
         Field::scalar("radius", &radius),
         Field::scalar("mass", &mass),
@@ -119,6 +119,12 @@ fn particles_file(
         Field::vector("spin", &spin),
         Field::integer("body", &body),
     ];
+    let clumps = bonded.clumps().of_particles(all.len());
+    let clump: Vec<i32> = if clumps.is_empty() { Vec::new() } else { shown().map(|i| clumps[i] as i32).collect() };
+    if !clump.is_empty() {
+        // -1 for those of none.
+        point_data.push(Field::integer("clump", &clump));
+    }
     let of_bonds = stress.map(|stress| {
         let strains = bonded.strains();
         let strain: Vec<[f32; 6]> = shown().map(|i| strains[i].0.map(|e| e as f32)).collect();

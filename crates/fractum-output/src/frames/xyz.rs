@@ -24,7 +24,10 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
     let present: Vec<usize> = (0..all.len()).filter(|&i| !all.is_out(i)).collect();
     let mut text = String::new();
     // Writing to a String cannot fail.
-    let _ = write!(text, "{}\nProperties={PROPERTIES} Time=", present.len());
+    // Only scenes with clumps have the column; -1 for particles of none.
+    let (clumps, mass) = (bonded.clumps().of_particles(all.len()), bonded.clumps().masses(all));
+    let of_clumps = if clumps.is_empty() { "" } else { ":clump:I:1" };
+    let _ = write!(text, "{}\nProperties={PROPERTIES}{of_clumps} Time=", present.len());
     push_shortest(&mut text, scene.clock.time);
     let _ = write!(text, " Step={}", scene.clock.step);
     match periodic_cell_of(scene) {
@@ -47,7 +50,7 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
         let vectors = |of: &fractum_math::Vec3| [of.x, of.y, of.z];
         let columns = [
             &vectors(&(all.position[i] + beyond))[..],
-            &[all.radius[i], all.mass[i]],
+            &[all.radius[i], mass[i]],
             &vectors(&(all.velocity[i] + faster)),
             &vectors(&all.spin[i]),
             &[turn.x, turn.y, turn.z, turn.w],
@@ -58,7 +61,11 @@ pub(super) fn file(scene: &Scene) -> Option<PendingFile> {
             text.push(' ');
             push_shortest(&mut text, *value);
         }
-        let _ = writeln!(text, " {}", lost[i]);
+        let _ = write!(text, " {}", lost[i]);
+        if let Some(clump) = clumps.get(i) {
+            let _ = write!(text, " {}", *clump as i32);
+        }
+        text.push('\n');
     }
     Some(PendingFile::of_text(text))
 }

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use fractum_calibrate::{CalibrateError, Sample};
-use fractum_dem::{CrackFaces, LocalBond, Particles};
+use fractum_dem::{Clumps, CrackFaces, LocalBond, Particles};
 use fractum_pack::{BondNetwork, Packing};
 use fractum_scene::BondFracture;
 
@@ -96,6 +96,7 @@ fn with_interfaces(
         out_of_flat_walls: sample.packing.out_of_flat_walls(),
         fraction: sample.fraction,
         fracture: own.law.can_fail().then_some(fracture),
+        clumps: Clumps::default(),
         replaced,
     };
     Ok((body, InterfaceReport { law: own.law, mean_share }))

@@ -41,7 +41,7 @@ impl Bonded {
         self.part = Some(Box::new(part));
         self.set_strangers();
         let moved = self.supports.driven().chain(self.held_in_motion()).chain(self.loads.points());
-        let everywhere: Vec<u32> = everywhere.chain(moved).chain(self.tied.iter().copied()).collect();
+        let everywhere: Vec<u32> = everywhere.chain(moved).chain(self.carried.iter().copied()).collect();
         self.follow(&everywhere);
     }
 
@@ -81,6 +81,7 @@ impl Bonded {
     /// See [`Particles::start_half_a_step_early`]; each rank knows the forces on what it moves.
     pub(crate) fn start_half_a_step_early(&mut self, dt: f64) {
         self.particles.start_half_a_step_early(dt);
+        self.clumps.start_half_a_step_early(&mut self.particles, dt);
         self.part.iter_mut().for_each(|part| part.forget_others());
     }
 

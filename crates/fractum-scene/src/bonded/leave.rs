@@ -22,11 +22,19 @@ impl Bonded {
     /// - `dt` [s]: the step that led to tⁿ
     pub(crate) fn let_leave(&mut self, domain: &Domain, touching: &[u32], dt: f64, left: &mut Left) -> (f64, Vec<u32>) {
         let all = &self.particles;
-        let piece = connected(all.len(), self.pairs_of(|body, bond| body.bonds.is_live(bond)));
+        let bonds = self.pairs_of(|body, bond| body.bonds.is_live(bond));
+        let of_clumps = (0..self.clumps.len()).flat_map(|clump| {
+            let own = self.clumps.particles_of(clump);
+            own.clone().skip(1).map(move |i| [own.start as u32, i as u32])
+        });
+        let piece = connected(all.len(), bonds.chain(of_clumps));
+        let clump_of = self.clumps.of_particles(all.len());
         let mut stays = vec![false; all.len()];
         touching.iter().for_each(|&i| stays[piece[i as usize] as usize] = true);
         for i in 0..all.len() {
-            let bound = all.held[i] != 0 || !domain.is_ball_outside(&all.position[i], all.radius[i]);
+            // Clumps hold their spheres, and nothing holds clumps; what is out has left.
+            let held = all.held[i] != 0 && (all.is_out(i) || clump_of.get(i).is_none_or(|clump| *clump == u32::MAX));
+            let bound = held || !domain.is_ball_outside(&all.position[i], all.radius[i]);
             stays[piece[i] as usize] |= bound;
         }
         for [i, j] in self.bodies.iter().filter_map(|body| body.fracture.as_ref()).flat_map(|f| f.touching(all)) {
@@ -40,6 +48,20 @@ impl Bonded {
         let mut energy = 0.0;
         for &i in &leaves {
             let particle = i as usize;
+            left.pieces += usize::from(piece[particle] == i);
+            if let Some(&clump) = clump_of.get(particle).filter(|clump| **clump != u32::MAX) {
+                // With the first of its spheres it leaves as a whole.
+                if piece[particle] == i {
+                    let clump = clump as usize;
+                    let [force, moment] = self.clumps.load(clump, &self.particles);
+                    let (velocity, spin) = (self.clumps.motion.velocity[clump], self.clumps.motion.spin[clump]);
+                    energy += self.clumps.kinetic_energy_of(clump);
+                    energy += 0.5 * dt * (force.dot(&velocity) + moment.dot(&spin));
+                    left.mass += self.clumps.mass(clump);
+                    left.momentum += velocity * self.clumps.mass(clump);
+                }
+                continue;
+            }
             let Particles { velocity, spin, force, moment, mass, .. } = &self.particles;
             let (v, w, mass) = (velocity[particle], spin[particle], mass[particle]);
             // What resists the change of lengths books its own work.
@@ -48,7 +70,6 @@ impl Bonded {
             energy += 0.5 * dt * ((force[particle] - viscous).dot(&v) + moment[particle].dot(&w));
             left.mass += mass;
             left.momentum += v * mass;
-            left.pieces += usize::from(piece[particle] == i);
         }
         self.take_out(&leaves);
         (energy, leaves)
@@ -63,6 +84,11 @@ impl Bonded {
             self.particles.take_out(i);
             for past in [&mut self.past.force, &mut self.past.moment] {
                 past.get_mut(i).into_iter().for_each(|past| *past = Vec3::zeros());
+            }
+        }
+        for clump in 0..self.clumps.len() {
+            if self.particles.is_out(self.clumps.particles_of(clump).start) {
+                self.clumps.take_out(clump);
             }
         }
         for body in &mut self.bodies {

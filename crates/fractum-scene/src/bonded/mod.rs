@@ -13,8 +13,8 @@ mod state;
 use std::ops::Range;
 
 use fractum_dem::{
-    AnyBondLaw, BondEnergy, BondGraph, Bonds, Crack, Fracture, Occasion, ParticleDamping, ParticleSubdomain, Particles,
-    PastForces, TimeStep,
+    AnyBondLaw, BondEnergy, BondGraph, Bonds, Clumps, Crack, Fracture, Occasion, ParticleDamping, ParticleSubdomain,
+    Particles, PastForces, TimeStep,
 };
 use fractum_fem::LocalDamping;
 use fractum_math::{HalfSteps, Vec3, Work};
@@ -50,6 +50,8 @@ pub struct BondedPart {
     pub fraction: f64,
     /// When its bonds break; never where there is nothing.
     pub fracture: Option<BondFracture>,
+    /// Rigid grains that its particles are spheres of; none of bonded bodies.
+    pub clumps: Clumps,
 }
 
 /// How close a body came to its first or next broken bond.
@@ -127,8 +129,10 @@ pub struct Bonded {
     pub(crate) bodies: Vec<BondedBody>,
     pub(crate) supports: Supports,
     pub(crate) loads: Loads,
-    /// Particles that follow the facets of a solid, ascending; their mass is the nodes'.
-    tied: Vec<u32>,
+    /// Rigid grains of particles.
+    pub(crate) clumps: Clumps,
+    /// Particles that follow the facets of a solid or a clump, ascending; their mass is that of the nodes or the clump.
+    carried: Vec<u32>,
     /// Elastic energy of the bonds when last measured.
     pub(crate) energy: BondEnergy,
     /// Elastic energy that bonds which broke before tⁿ held [J].
@@ -158,7 +162,8 @@ impl Bonded {
         let mut plans = Vec::new();
         for part in parts {
             let start = all.particles.len();
-            let BondedPart { name, mut particles, pairs, law, shares, density, fraction, fracture } = part;
+            let BondedPart { name, mut particles, pairs, law, shares, density, fraction, fracture, clumps } = part;
+            all.clumps.append(clumps, start);
             let range = start..start + particles.len();
             let own = &mut all.particles;
             own.position.append(&mut particles.position);
@@ -175,6 +180,7 @@ impl Bonded {
             plans.push((name, range, (pairs, shares, law), [density, fraction], fracture));
         }
         all.reference = all.particles.position.clone();
+        all.carried = all.clumps.all_particles().map(|i| i as u32).collect();
         for (name, range, (pairs, shares, law), [density, fraction], mut plan) in plans {
             let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
             if let Some(plan) = &mut plan {
@@ -253,18 +259,27 @@ impl Bonded {
         self.loads = Loads::new(loads, self.particles.len());
     }
 
-    /// Hands particles over to what moves them from now on.
-    pub(crate) fn set_tied(&mut self, mut tied: Vec<u32>) {
-        tied.sort_unstable();
+    /// Hands particles over to the solids that move them from now on.
+    pub(crate) fn set_tied(&mut self, tied: Vec<u32>) {
         // Held in all degrees of freedom, they take no part in the step.
         tied.iter().for_each(|&i| self.particles.held[i as usize] = 0b11_1111);
-        self.tied = tied;
+        self.carried.extend(tied);
+        self.carried.sort_unstable();
     }
 
-    /// Mass of a particle that moves by itself, 0 of a tied one [kg].
+    /// Whether something else moves a particle.
+    fn is_carried(&self, particle: usize) -> bool {
+        self.carried.binary_search(&(particle as u32)).is_ok()
+    }
+
+    /// Mass of a particle that moves by itself, 0 of one that is carried [kg].
     fn own_mass(&self, particle: usize) -> f64 {
-        let tied = self.tied.binary_search(&(particle as u32)).is_ok();
-        if tied { 0.0 } else { self.particles.mass[particle] }
+        if self.is_carried(particle) { 0.0 } else { self.particles.mass[particle] }
+    }
+
+    /// Rigid grains that particles are spheres of.
+    pub fn clumps(&self) -> &Clumps {
+        &self.clumps
     }
 
     /// Whether there is no bonded body.
@@ -287,9 +302,10 @@ impl Bonded {
         &self.reference
     }
 
-    /// Degrees of freedom that are prescribed.
+    /// Degrees of freedom that are prescribed, or follow a solid.
     pub fn held_count(&self) -> usize {
-        self.particles.held.iter().map(|bits| bits.count_ones() as usize).sum()
+        let all: usize = self.particles.held.iter().map(|bits| bits.count_ones() as usize).sum();
+        all - 6 * self.clumps.all_particles().count()
     }
 
     /// Bonds at the start, and those of them that have broken.
@@ -323,7 +339,8 @@ impl Bonded {
     /// - `dt` [s]: the step that led here
     /// - `measure`: whether to sum the elastic energy, see [`Bonded::energy`]
     pub(crate) fn update_bond_forces(&mut self, dt: f64, measure: bool) -> Work {
-        let Bonded { particles, bodies, energy, released, dissipated, viscous, part, .. } = self;
+        let Bonded { particles, bodies, energy, released, dissipated, viscous, part, clumps, .. } = self;
+        clumps.clear_forces();
         match part {
             Some(part) => particles.clear_forces_of_part(part),
             None => particles.clear_forces(),
@@ -379,16 +396,16 @@ impl Bonded {
         }
     }
 
-    /// Kinetic energy of the particles that no solid carries [J].
+    /// Kinetic energy of the particles that no solid carries, and of clumps [J].
     pub(crate) fn kinetic_energy(&self) -> f64 {
-        self.particles.kinetic_energy() - energy_of(&self.particles, &self.tied)
+        self.particles.kinetic_energy() - energy_of(&self.particles, &self.carried) + self.clumps.kinetic_energy()
     }
 
     /// Adds the loads of `time`; returns their work in the half step before [J].
     pub(crate) fn add_loads(&mut self, time: f64, dt_before: f64) -> f64 {
-        let Bonded { particles, reference, loads, tied, part, .. } = self;
+        let Bonded { particles, reference, loads, carried, clumps, part, .. } = self;
         let part = part.as_deref();
-        loads.add_forces(&mut ParticlePoints { particles, reference, tied, part }, time, dt_before)
+        loads.add_forces(&mut ParticlePoints { particles, reference, carried, clumps, part }, time, dt_before)
     }
 
     /// Advances velocities and positions, then puts prescribed motion in the place of free motion.
@@ -411,17 +428,19 @@ impl Bonded {
             partial,
             past,
             dissipation,
-            tied,
+            carried,
+            clumps,
             viscous,
             part,
             ..
         } = self;
         let resistance = viscous_power(particles, viscous);
         let damping = ParticleDamping { local: damping.local, mass_rate: damping.mass_rate, dissipation: *dissipation };
-        let counted_twice = if measure { energy_of(particles, tied) } else { 0.0 };
-        let mut points = ParticlePoints { particles, reference, tied, part: part.as_deref() };
+        let counted_twice = if measure { energy_of(particles, carried) } else { 0.0 };
+        let mut points = ParticlePoints { particles, reference, carried, clumps, part: part.as_deref() };
         supports.remember(&points, None);
         let step = TimeStep { dt_before, dt_after, damping, measure };
+        let of_clumps = points.clumps.kick_and_drift(points.particles, &step);
         let mut work = match points.part {
             Some(part) => points.particles.kick_and_drift_part(part, &step, past, partial),
             None => points.particles.kick_and_drift(&step, past, partial),
@@ -431,6 +450,8 @@ impl Bonded {
         work.before.damping -= 0.5 * dt_before * resistance;
         work.before.kinetic -= counted_twice;
         work.after.kinetic -= counted_twice;
+        work += of_clumps;
+        points.clumps.carry(points.particles);
         follow(points.particles);
         work.after.external += 0.5 * dt_after * loads.power(&points);
         part.iter_mut().for_each(|part| part.exchange_ghosts(particles));

@@ -9,7 +9,7 @@ impl Bonded {
     /// Linear momentum of all particles [kg m/s].
     pub(crate) fn momentum(&self) -> Vec3 {
         let all = &self.particles;
-        (0..all.len()).map(|i| all.velocity[i] * self.own_mass(i)).sum()
+        (0..all.len()).map(|i| all.velocity[i] * self.own_mass(i)).sum::<Vec3>() + self.clumps.momentum()
     }
 
     /// Angular momentum of all particles about the origin, their spin included [kg m²/s].
@@ -19,7 +19,7 @@ impl Bonded {
             0.0 => Vec3::zeros(),
             mass => all.position[i].cross(&all.velocity[i]) * mass + all.spin[i] * all.inertia[i],
         };
-        (0..all.len()).map(of).sum()
+        (0..all.len()).map(of).sum::<Vec3>() + self.clumps.angular_momentum()
     }
 
     /// The particle with the largest kinetic energy, or with a value that is not a number: its energy, body and place.

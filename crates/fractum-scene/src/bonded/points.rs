@@ -2,18 +2,19 @@
 
 use std::ops::Range;
 
-use fractum_dem::{ParticleSubdomain, Particles};
+use fractum_dem::{Clumps, ParticleSubdomain, Particles};
 use fractum_math::{CHUNK, Vec3};
 use rayon::prelude::*;
 
 use super::Bonded;
 use crate::conditions::{DrivenPoints, Points};
 
-/// Particles with their reference; those that are tied weigh on nodes.
+/// Particles with their reference; the weight of those that are carried is that of nodes or clumps.
 pub(super) struct ParticlePoints<'a> {
     pub(super) particles: &'a mut Particles,
     pub(super) reference: &'a [Vec3],
-    pub(super) tied: &'a [u32],
+    pub(super) carried: &'a [u32],
+    pub(super) clumps: &'a mut Clumps,
     pub(super) part: Option<&'a ParticleSubdomain>,
 }
 
@@ -78,7 +79,8 @@ impl DrivenPoints for ParticlePoints<'_> {
             Some(part) => part.moved().for_each(add),
             None => add(0..mass.len()),
         }
-        self.tied.iter().for_each(|&i| force[i as usize] -= *gravity * mass[i as usize]);
+        self.carried.iter().for_each(|&i| force[i as usize] -= *gravity * mass[i as usize]);
+        self.clumps.add_weight(gravity);
     }
 
     fn momentum(&self, partial: &mut [Vec3]) -> Vec3 {
@@ -98,7 +100,7 @@ impl DrivenPoints for ParticlePoints<'_> {
                 sums.chunks(CHUNK / BLOCK).map(of_chunk).sum()
             }
         };
-        let tied: Vec3 = self.tied.iter().map(|&i| velocity[i as usize] * mass[i as usize]).sum();
-        all - tied
+        let carried: Vec3 = self.carried.iter().map(|&i| velocity[i as usize] * mass[i as usize]).sum();
+        all - carried + self.clumps.momentum()
     }
 }

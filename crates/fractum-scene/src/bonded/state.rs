@@ -1,6 +1,6 @@
 //! What changes in bonded bodies during a run.
 
-use fractum_dem::{BondMemory, FractureState, Particles, PastForces};
+use fractum_dem::{BondMemory, ClumpMotion, FractureState, Particles, PastForces};
 use fractum_math::{Rotation, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,7 @@ pub struct BondedState {
     /// Broken bonds and crack faces of each body, with how close it came to breaking.
     fracture: Vec<(BondsState, Option<Closest>)>,
     past: PastForces,
+    clumps: ClumpMotion,
 }
 
 /// What changes in the bonds of a body.
@@ -62,18 +63,19 @@ impl Bonded {
     pub fn state(&self) -> BondedState {
         let Particles { position, orientation, velocity, spin, .. } = self.particles.clone();
         let fracture = self.bodies.iter().map(|body| (BondsState::of(body), body.closest));
-        let (fracture, past) = (fracture.collect(), self.past.clone());
-        BondedState { position, orientation, velocity, spin, fracture, past }
+        let (fracture, past, clumps) = (fracture.collect(), self.past.clone(), self.clumps.motion.clone());
+        BondedState { position, orientation, velocity, spin, fracture, past, clumps }
     }
 
     /// Puts a saved state back into bodies built from the same case.
     pub fn restore(&mut self, state: BondedState) {
-        let BondedState { position, orientation, velocity, spin, fracture, past } = state;
+        let BondedState { position, orientation, velocity, spin, fracture, past, clumps } = state;
         for (body, (broken, closest)) in self.bodies.iter_mut().zip(fracture) {
             broken.restore(body);
             body.closest = closest;
         }
         self.particles = Particles { position, orientation, velocity, spin, ..std::mem::take(&mut self.particles) };
         self.past = past;
+        self.clumps.motion = clumps;
     }
 }

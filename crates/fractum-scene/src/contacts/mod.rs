@@ -53,6 +53,9 @@ const RAYLEIGH_SHARE: f64 = 0.25;
 /// steps for the energy balance: its error falls with the square of the step.
 const LOOSE_SHARE: f64 = 0.0625;
 
+/// Clump of a particle that belongs to none.
+const NO_CLUMP: u32 = u32::MAX;
+
 /// How the particles of a body touch others.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactMaterial {
@@ -75,6 +78,8 @@ pub struct Contacts {
     bonded: Vec<bool>,
     /// Body of each particle.
     body: Vec<u16>,
+    /// Clump of each particle, where there are clumps.
+    clump: Vec<u32>,
     /// Pairs of materials, body by body.
     pairs: Vec<MaterialPair>,
     among: Option<SphereContacts<Hertz>>,
@@ -174,17 +179,26 @@ impl Contacts {
             (SurfaceContacts::new(skin), materials.iter().map(with).collect())
         };
         let is_bonded: Vec<bool> = bonded.bodies().iter().map(|body| !body.bonds.is_empty()).collect();
-        let rayleigh = (0..body.len()).map(|i| {
+        let rayleigh = |i: usize| {
             let share = if is_bonded[body[i] as usize] { RAYLEIGH_SHARE } else { LOOSE_SHARE };
             let ContactMaterial { elastic, density, .. } = materials[body[i] as usize];
             let nu = elastic.poisson_ratio;
             let shear = elastic.young_modulus / (2.0 * (1.0 + nu));
             let time = std::f64::consts::PI * bonded.particles.radius[i].abs() * (density / shear).sqrt();
             2.0 / (share * time / (0.1631 * nu + 0.8766))
-        });
+        };
+        let clumps = bonded.clumps();
+        let clump = clumps.of_particles(body.len());
+        let alone = |i: usize| rayleigh(i).powi(2);
+        let of_clump = |own: usize| {
+            let density = materials[body[clumps.particles_of(own).start] as usize].density;
+            clumps.frequency_square(own, &bonded.particles, alone, density).sqrt()
+        };
+        let frequencies = (0..body.len()).filter(|&i| clump.get(i).is_none_or(|own| *own == NO_CLUMP)).map(rayleigh);
+        let highest = frequencies.chain((0..clumps.len()).map(of_clump)).fold(0.0, f64::max);
         let meets =
             is_bonded.iter().any(|b| !b) || !rigid_bodies.is_empty() || !solids.is_empty() || is_bonded.len() > 1;
-        let rayleigh_frequency = if meets { rayleigh.fold(0.0, f64::max) } else { 0.0 };
+        let rayleigh_frequency = if meets { highest } else { 0.0 };
         let alone = is_bonded.len() == 1 && is_bonded[0];
         let contacts = Contacts {
             pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
@@ -196,6 +210,7 @@ impl Contacts {
             bonded: is_bonded,
             materials,
             body,
+            clump,
             rigid_bodies,
             rayleigh_frequency,
             flat: FlatBodies::default(),
@@ -381,13 +396,14 @@ impl Contacts {
         work
     }
 
-    /// The law of two particles; none where bonds hold them.
+    /// The law of two particles; none where bonds or a clump hold them.
     fn law_among(&self, radius: &[f64], mass: &[f64], i: u32, j: u32) -> Option<Hertz> {
         let (i, j) = (i as usize, j as usize);
         let (a, b) = (self.body[i] as usize, self.body[j] as usize);
         let reduced = |of: &[f64]| of[i] * of[j] / (of[i] + of[j]);
         let pair = &self.pairs[a * self.materials.len() + b];
-        (a != b || !self.bonded[a]).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
+        let is_one = self.clump.get(i).is_some_and(|clump| *clump != NO_CLUMP && *clump == self.clump[j]);
+        (!is_one && (a != b || !self.bonded[a])).then(|| Hertz::new(pair, reduced(radius), reduced(mass)))
     }
 
     /// Accelerations at a time [m/s²].

@@ -328,7 +328,7 @@ mod tests {
     use crate::coupling::Debris;
     use crate::coupling::Layer;
     use crate::{Scene, SceneSettings};
-    use fractum_dem::BeamSection;
+    use fractum_dem::{BeamSection, Clumps};
     use fractum_fem::{Body, Elastic, ElementKind, Kinematics, LocalDamping};
     use fractum_mesh::generate::{Jitter, structured_box};
     use fractum_mesh::topology;
@@ -369,6 +369,7 @@ mod tests {
             density: 2500.0,
             fraction: 1.0,
             fracture: None,
+            clumps: Clumps::default(),
         };
         let mut bonded = Bonded::new(vec![part]).unwrap();
         bonded.set_loads(on_particles);

@@ -91,8 +91,14 @@ fn bonded(body: &BondedBody) -> f64 {
     FILLED * volume / sphere_volume(radius)
 }
 
-/// Particles of a cloud, or of a stream of a density [kg/m³].
+/// Spheres of a cloud, or of a stream of a density [kg/m³].
 fn loose(body: &LooseBody, density: f64) -> f64 {
+    let spheres = body.clump.as_ref().map_or(1, |clump| clump.value.shape.spheres().len());
+    spheres as f64 * grains(body, density)
+}
+
+/// Particles of a cloud, or of a stream of a density [kg/m³].
+fn grains(body: &LooseBody, density: f64) -> f64 {
     if let LooseSource::Inlet { stream, .. } = &body.source {
         return stream.count(density);
     }

@@ -63,13 +63,21 @@ impl Plan {
                         let all = &scene.bonded.particles;
                         // Those that are to come in have negative radii.
                         let radius: Vec<f64> = all.radius[part.range.clone()].iter().map(|r| r.abs()).collect();
-                        let mass = &all.mass[part.range.clone()];
+                        let mass = &scene.bonded.clumps().masses(all)[part.range.clone()];
                         let of =
                             |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
+                        let what = match &loose.clump {
+                            None => format!("{} loose particles", radius.len()),
+                            Some(clump) => {
+                                let each = clump.value.shape.spheres().len();
+                                let spheres = if each == 1 { "sphere" } else { "spheres" };
+                                let clumps = if radius.len() == each { "clump" } else { "clumps" };
+                                format!("{} {clumps} of {each} {spheres}, in all {}", radius.len() / each, radius.len())
+                            }
+                        };
                         let text = format!(
-                            "{}: {} loose particles of radius {} to {}, {}, mass {}",
+                            "{}: {what} of radius {} to {}, {}, mass {}",
                             part.name,
-                            radius.len(),
                             of(f64::min),
                             of(f64::max),
                             case.materials[loose.material].name.value,

@@ -247,6 +247,11 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     }
     found.extend(case.solver.subcycling.iter().map(|place| (place, "subcycling")));
     found.extend(case.solver.accuracy.iter().map(|asked| (&asked.share.place, "passes to an accuracy")));
+    let clumps = case.bodies.iter().filter_map(|body| match &body.kind {
+        BodyKind::Particles(loose) => loose.clump.as_ref(),
+        _ => None,
+    });
+    found.extend(clumps.map(|clump| (&clump.place, "clumps of spheres")));
     found.extend(case.periodic.iter().map(|periodic| (&periodic.place, "a periodic box")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
     found
