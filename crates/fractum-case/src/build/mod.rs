@@ -404,6 +404,7 @@ impl<'a> Context<'a> {
                 element_bound: solver.time_step == TimeStep::Element
                     || matches!(solver.kind, SolverKind::Static | SolverKind::Heat | SolverKind::Modes),
                 fixed: solver.step.as_ref().filter(|_| solver.statics.is_none()).map(|step| step.value),
+                begin: solver.begin,
                 end: solver.end,
             },
             damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },
