@@ -12,6 +12,7 @@ use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
+use super::precheck::check_field;
 use crate::model::{BodyKind, Material, Selection, TimeStep};
 use crate::{Diagnostic, Field, Spanned};
 
@@ -42,6 +43,9 @@ impl Context<'_> {
             let count = made.particles.len() as u32;
             let motion = initial_motion(initial_velocity);
             if let Some(motion) = &motion {
+                for field in initial_velocity.iter().flatten() {
+                    check_field(self, field, seen(&made.particles));
+                }
                 set_motion(&mut made.particles, motion);
             }
             if let Some(arrivals) = made.arrivals.take() {
@@ -183,12 +187,14 @@ fn flat_faces(material: &Material, shift: Vec<Vec3>) -> Option<FlatFaces> {
 }
 
 /// Velocity of a field at a place [m/s], and its rate of rotation over a radius there, half the curl [rad/s]; none where all is at rest.
-fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [Vec3; 2] + Send + Sync + use<>> {
+fn initial_motion(
+    field: &[Option<Spanned<Field>>; 3],
+) -> Option<impl Fn(&Vec3, f64) -> [Vec3; 2] + Send + Sync + use<>> {
     if field.iter().all(Option::is_none) {
         return None;
     }
     let field = field.clone();
-    let velocity = move |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value(0.0, x)));
+    let velocity = move |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value.at(x)));
     Some(move |x: &Vec3, h: f64| {
         // Central differences over the particle itself: what it would see of the motion.
         let slope = |axis: usize| {
@@ -198,6 +204,18 @@ fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [
         };
         let [dx, dy, dz] = [slope(0), slope(1), slope(2)];
         [velocity(*x), Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5]
+    })
+}
+
+/// Places at which particles look at a field of velocity, see [`initial_motion`].
+fn seen(particles: &Particles) -> impl Iterator<Item = Vec3> {
+    particles.position.iter().zip(&particles.radius).flat_map(|(&x, &h)| {
+        let beside = move |axis: usize| {
+            let mut step = Vec3::zeros();
+            step[axis] = h;
+            [x + step, x - step]
+        };
+        std::iter::once(x).chain((0..3).flat_map(beside))
     })
 }
 

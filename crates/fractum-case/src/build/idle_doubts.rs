@@ -123,7 +123,7 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
     };
     let body = |kind: &BodyKind| match kind {
         BodyKind::Solid(solid) => {
-            solid.initial_velocity.iter().flatten().any(|field| field.constant_value() != Some(0.0))
+            solid.initial_velocity.iter().flatten().any(|field| field.value.constant_value() != Some(0.0))
         }
         BodyKind::Rigid(rigid) => {
             let thrown = rigid.initial_velocity.iter().any(Option::is_some);

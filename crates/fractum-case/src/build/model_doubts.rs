@@ -289,11 +289,11 @@ fn torn_at_once(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
     let material = &case.materials[body.solid.material];
     let law = &material.damage.as_ref().filter(|_| body.solid.damage)?.value.law;
     let velocity = &body.solid.initial_velocity;
-    let varies = velocity.iter().flatten().any(|field| field.constant_value().is_none());
+    let varies = velocity.iter().flatten().any(|field| field.value.constant_value().is_none());
     if !varies || mesh.whole.is_some() || case.solver.kind != SolverKind::Explicit {
         return None;
     }
-    let at = |place: Vec3| Vec3::from_fn(|axis, _| velocity[axis].as_ref().map_or(0.0, |field| field.at(place)));
+    let at = |place: Vec3| Vec3::from_fn(|axis, _| velocity[axis].as_ref().map_or(0.0, |field| field.value.at(place)));
     let speeds: HashMap<u32, Vec3> = body.nodes.iter().map(|&node| (node, at(mesh.nodes[node as usize]))).collect();
     let parted = |nodes: &[u32]| -> Option<(f64, f64, Vec3)> {
         let pairs = (0..nodes.len()).flat_map(|i| (0..i).map(move |j| [nodes[i], nodes[j]]));

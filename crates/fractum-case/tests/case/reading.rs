@@ -68,8 +68,8 @@ fn a_case_with_every_key_is_read_into_si() {
     let BodyKind::Solid(block) = &case.bodies[0].kind else { panic!() };
     let here = Vec3::new(0.05, -0.07, 0.0);
     assert_eq!((block.formulation, block.material, block.damage), (Formulation::Standard, 0, true));
-    assert_eq!(block.initial_velocity[1].as_ref().unwrap().at(here), 0.5);
-    assert_eq!(block.initial_velocity[2].as_ref().unwrap().at(here), -0.5);
+    assert_eq!(block.initial_velocity[1].as_ref().unwrap().value.at(here), 0.5);
+    assert_eq!(block.initial_velocity[2].as_ref().unwrap().value.at(here), -0.5);
     let zone = &block.damage_where.as_ref().unwrap().value;
     assert!(zone.holds_at(here) && !zone.holds_at(Vec3::new(0.0, 0.09, 0.0)) && !zone.holds_at(-here));
     assert!((block.strength_factor.as_ref().unwrap().value.at(Vec3::new(0.025, 0.0, 0.0)) - 1.1).abs() < 1e-15);
