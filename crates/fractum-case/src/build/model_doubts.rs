@@ -9,8 +9,8 @@ use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, thin, unheld};
-use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, taken_at_once, unmoved};
+use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, pushed_away, thin, unheld};
+use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, tables_in_vain, taken_at_once, unmoved};
 use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
@@ -66,7 +66,8 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(inlets::doubts(case));
     doubts.extend(periodic::doubts(case));
     doubts.extend(contact_pairs::in_vain(case, bodies.iter().any(|body| body.plane)));
-    doubts.extend(unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies)));
+    let unheld = unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies));
+    doubts.extend(unheld.or_else(|| pushed_away(case, mesh, &bodies)));
     let joined = pieces(mesh, &bodies);
     let is_alone = |piece: u32| joined.iter().filter(|other| **other == piece).count() == 1;
     doubts.extend(bodies.iter().zip(&joined).filter_map(|(body, &piece)| thin(case, mesh, body, is_alone(piece))));
@@ -79,6 +80,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(all_prescribed(case, mesh, &bodies));
     doubts.extend(doubts_of_in_situ(case, mesh, &bodies));
     doubts.extend(measured_in_vain(case));
+    doubts.extend(tables_in_vain(case));
     let mut begin = 0.0;
     for (before, stage) in std::iter::once(case).chain(&case.later).zip(&case.later) {
         doubts.extend(steps_between(before, stage));
