@@ -77,6 +77,15 @@ pub(super) const HEAT_CAPACITY: Usual = Usual {
     units: &[("J/(kg K)", 1.0), ("kJ/(kg K)", 1e3)],
 };
 
+/// Velocity of detonation [m/s].
+pub(super) const DETONATION: Usual = Usual {
+    unit: "m/s",
+    range: (300.0, 1.2e4),
+    words: "300 m/s to 12 km/s (black powder has 500 m/s, ANFO 4 km/s, PETN 8 km/s)",
+    common: (1e3, 1e4),
+    units: &[("km/s", 1e3), ("m/s", 1.0)],
+};
+
 impl Usual {
     /// Whether solids have such a value.
     pub(super) fn is_usual(&self, value: f64) -> bool {

@@ -304,6 +304,16 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         ),
         checked("jump", bar(), &[("[[bodies]]", DAMAGE), (ramp, "\"0.5 m/s\"")]),
         checked("unit-of-load", bar(), &[("[solver]", &load("pressure = 8"))]),
+        checked(
+            "unusual-value",
+            bar(),
+            &[(
+                "[solver]",
+                &load(
+                    "pressure = { pulse = \"half-sine\", peak = \"1 MPa\", duration = \"1 ms\" }\ndetonation = { velocity = \"4.5 m/s\", along = \"x\" }",
+                ),
+            )],
+        ),
         checked("unit-of-motion", bar(), &[(ramp, "\"10 km/s\"")]),
         checked("unusual-value", bar(), &[("density = \"2400 kg/m^3\"", "density = 2.4")]),
         checked("time-step", bar(), &[(end, "safety = 1.2\nend = \"0.3 ms\"")]),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use fractum_dem::Particles;
 use fractum_math::Vec3;
+use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_pack::Domain;
 use fractum_prepare::PreparedBody;
@@ -13,8 +14,11 @@ use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
 use super::precheck::check_field;
-use crate::model::{BodyKind, Material, Selection, TimeStep};
+use crate::model::{BodyKind, BondedBody, Case, LooseBody, LooseSource, Material, PackingSource, Selection, TimeStep};
 use crate::{Diagnostic, Field, Spanned};
+
+/// Mean radius of the particles of a file from which on it is probably in millimetres [m].
+const LARGE_RADIUS: f64 = 0.5;
 
 /// A set of particles, ascending, with its name.
 pub(super) type NamedSet = (String, Vec<u32>);
@@ -205,6 +209,32 @@ fn initial_motion(
         let [dx, dy, dz] = [slope(0), slope(1), slope(2)];
         [velocity(*x), Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5]
     })
+}
+
+/// Particles of files that are as large as if their unit were another one.
+pub(super) fn doubts_of_size(case: &Case, prepared: &[PreparedBody]) -> Vec<Diagnostic> {
+    let file = |kind: &'_ BodyKind| match kind {
+        BodyKind::Particles(LooseBody { source: LooseSource::File { file, unit, .. }, .. })
+        | BodyKind::Bonded(BondedBody { packing: PackingSource::Particles { file, unit, .. }, .. }) => {
+            Some(Some((file.name.clone(), *unit)))
+        }
+        BodyKind::Particles(_) | BodyKind::Bonded(_) => Some(None),
+        _ => None,
+    };
+    let files = case.bodies.iter().filter_map(|body| file(&body.kind));
+    let doubt = |(file, made): (Option<(Spanned<String>, f64)>, &PreparedBody)| {
+        let (name, unit) = file?;
+        let radii = &made.particles.radius;
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        if unit != 1.0 || mean < LARGE_RADIUS {
+            return None;
+        }
+        let found = format!("= \"{}\": its particles have a mean radius of {}", name.value, quantity(mean, "m"));
+        let note = Diagnostic::warning(Code::UnitOfLength, &name.place, found);
+        let note = note.expected("lengths in metres, the unit where bodies[].unit names no other");
+        Some(note.remedy("if they are in millimetres, set unit = \"mm\" on the body"))
+    };
+    files.zip(prepared).filter_map(doubt).collect()
 }
 
 /// Places at which particles look at a field of velocity, see [`initial_motion`].

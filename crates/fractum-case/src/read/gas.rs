@@ -7,6 +7,7 @@ use crate::model::{Gas, GasHole, GasLaw, Preset, Solver, SolverKind};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::selection::selection;
+use crate::usual::DETONATION;
 use crate::{Diagnostic, Spanned, TimeFunction};
 
 /// Reads the gas, if there is any; nothing where it is wrong. It acts in stages of motion.
@@ -172,7 +173,7 @@ fn burning(table: &Table<'_>, explosive: Option<Explosive>) -> Option<Option<Bur
     let Some(inner) = table.table("detonation") else { return Some(None) };
     let length = inner.quantity("length").positive().required();
     let delay = inner.quantity("delay").not_negative().or_if_absent(0.0);
-    let velocity = inner.quantity("velocity").positive();
+    let velocity = inner.quantity("velocity").positive().usual(&DETONATION);
     let velocity = match explosive {
         Some(explosive) => velocity.or_if_absent(explosive.velocity),
         None => velocity.required(),
