@@ -176,7 +176,7 @@ pub(super) fn pushed_away(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Di
             support.surface.as_ref().is_some_and(|surface| surface.value != SurfaceSupport::Absorbing)
         };
         let held = case.supports.iter().any(|support| support.motion[*axis].is_some() || springs(support));
-        !held && !(lies_around && *axis == 0)
+        !(held || lies_around && *axis == 0)
     };
     // One sense of a push that lasts; none of one that ends or turns back.
     let sense = |function: &TimeFunction| {

@@ -194,6 +194,15 @@ fn risky_settings_are_warned_of() {
         ["materials.idle"]
     );
     assert_eq!(warned(&format!("{SMALL}[output.fields]\nevery = 1\n")), ["output.fields.every"]);
+    let gas = |ratio: f64, constant: &str, pressure: &str, temperature: &str| {
+        warned(&format!(
+            "{SMALL}[gas]\nheat_ratio = {ratio}\ngas_constant = \"{constant}\"\n[[gas.holes]]\ngroup = \"a\"\npressure = \"{pressure}\"\ntemperature = {temperature}\n"
+        ))
+    };
+    assert_eq!(gas(1.25, "320 J/(kg K)", "80 MPa", "2500"), Vec::<String>::new());
+    assert_eq!(gas(1.25, "320 J/(kg K)", "0 MPa", "2500"), Vec::<String>::new());
+    let mistaken = ["gas.heat_ratio", "gas.gas_constant", "gas.holes[0].pressure", "gas.holes[0].temperature"];
+    assert_eq!(gas(125.0, "8.314 J/(kg K)", "80 Pa", "20"), mistaken);
     let often = |every: &str| format!("{SMALL}[output.checkpoint]\nevery = \"{every}\"\n");
     assert_eq!(warned(&often("25 us")), ["output.checkpoint.every"]);
     assert_eq!(warned(&often("1 min")), Vec::<String>::new());
