@@ -22,7 +22,7 @@ pub fn softening(fracture_energy: f64) -> DamageLaw {
 /// - `balance_stop`: relative residual of the energy balance that stops it
 pub fn settings(end: f64, balance_stop: f64) -> SceneSettings {
     SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end },
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, begin: 0.0, end },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop,

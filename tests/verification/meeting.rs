@@ -119,7 +119,7 @@ pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
     let contacts = Contacts::new(&bonded, materials, rigid_bodies, solids, Vec::new());
     let debris = Debris::new(&solid, vec![SURFACE; all_facets.len()]);
     let settings = SceneSettings {
-        time_step: TimeStepSettings { safety: 0.2, element_bound: false, fixed: None, end: 4e-3 },
+        time_step: TimeStepSettings { safety: 0.2, element_bound: false, fixed: None, begin: 0.0, end: 4e-3 },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,
@@ -287,7 +287,7 @@ fn crossed_bars(cells: u32, (angle, shift): (f64, f64), nu: f64, gap: f64) -> Sc
     let contacts = Contacts::new(&Bonded::default(), Vec::new(), Vec::new(), solids, Vec::new());
     let debris = Debris::new(&solid, vec![free; 2]);
     let settings = SceneSettings {
-        time_step: TimeStepSettings { safety: 0.4, element_bound: false, fixed: None, end: 1.0 },
+        time_step: TimeStepSettings { safety: 0.4, element_bound: false, fixed: None, begin: 0.0, end: 1.0 },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,

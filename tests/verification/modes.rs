@@ -20,7 +20,7 @@ pub(super) fn scene(solid: Solid, supports: Vec<Support>) -> Scene {
     let loads = Loads::new(Vec::new(), solid.reference.len());
     let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let settings = SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: true, fixed: None, end: 1.0 },
+        time_step: TimeStepSettings { safety: 0.8, element_bound: true, fixed: None, begin: 0.0, end: 1.0 },
         damping: LocalDamping::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,

@@ -82,7 +82,7 @@ fn plane(point: Vec3, normal: Vec3, contact: ContactParameters) -> RigidBody {
 
 fn settings(end: f64, safety: f64, mass_rate: f64) -> SceneSettings {
     SceneSettings {
-        time_step: TimeStepSettings { safety, element_bound: false, fixed: None, end },
+        time_step: TimeStepSettings { safety, element_bound: false, fixed: None, begin: 0.0, end },
         damping: LocalDamping { local: 0.0, mass_rate },
         stiffness_time: 0.0,
         balance_stop: 1e-2,

@@ -77,27 +77,66 @@ pub(super) const HEAT_CAPACITY: Usual = Usual {
     units: &[("J/(kg K)", 1.0), ("kJ/(kg K)", 1e3)],
 };
 
+/// Velocity of detonation [m/s].
+pub(super) const DETONATION: Usual = Usual {
+    unit: "m/s",
+    range: (300.0, 1.2e4),
+    words: "300 m/s to 12 km/s (black powder has 500 m/s, ANFO 4 km/s, PETN 8 km/s)",
+    common: (1e3, 1e4),
+    units: &[("km/s", 1e3), ("m/s", 1.0)],
+};
+
+/// Gas constant per mass [J/(kg K)].
+pub(super) const GAS_CONSTANT: Usual = Usual {
+    unit: "J/(kg K)",
+    range: (30.0, 1e4),
+    words: "30 to 10000 J/(kg K) (air has 287): 8.314 J/(mol K) over the molar mass",
+    common: (100.0, 5e3),
+    units: &[("J/(kg K)", 1.0), ("kJ/(kg K)", 1e3)],
+};
+
+/// Ratio of the heat capacities of a gas [-].
+pub(super) const HEAT_RATIO: Usual = Usual {
+    unit: "",
+    range: (1.01, 5.0),
+    words: "1.01 to 5 (air has 1.4, products of detonation 1.25 as a gas and 3 as dense as they are at first)",
+    common: (1.01, 5.0),
+    units: &[],
+};
+
+/// Pressure of gas in a hole [Pa].
+pub(super) const GAS_PRESSURE: Usual = of_stress(
+    (1e3, 1e11),
+    "1 kPa to 100 GPa (air outside has 101 kPa)",
+    (1e5, 2e10),
+    &[("MPa", 1e6), ("kPa", 1e3), ("GPa", 1e9), ("Pa", 1.0)],
+);
+
 impl Usual {
     /// Whether solids have such a value.
     pub(super) fn is_usual(&self, value: f64) -> bool {
         (self.range.0..=self.range.1).contains(&value)
     }
 
-    /// A doubt about the value of a node, unless it is usual.
+    /// A doubt about the value of a node, unless it is usual, or 0 in any unit.
     ///
     /// - `parameter`: where the value stands if the node names a parameter
     pub(super) fn doubt(&self, node: &Node, value: f64, parameter: Option<Place>) -> Option<Diagnostic> {
-        if self.is_usual(value) {
+        if self.is_usual(value) || value == 0.0 {
             return None;
         }
         let meant = self.meant(node, value);
         let place = parameter.unwrap_or_else(|| node.place.clone());
         let size = quantity(value, self.unit);
-        let found =
-            if place == node.place { format!("{}, which is {size}", node.found()) } else { format!("is {size}") };
+        let found = match (place == node.place, self.unit) {
+            (true, "") => node.found(),
+            (true, _) => format!("{}, which is {size}", node.found()),
+            (false, _) => format!("is {size}"),
+        };
         let doubt = Diagnostic::warning(Code::UnusualValue, &place, found).expected(self.words);
         Some(match meant {
             Some(meant) => doubt.remedy(format!("did you mean \"{meant}\"?")),
+            None if self.unit.is_empty() => doubt,
             None => doubt.remedy("give the number with its unit"),
         })
     }

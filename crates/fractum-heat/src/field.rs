@@ -2,10 +2,13 @@ use fractum_math::{Vec3, sum_chunks};
 use fractum_sparse::SparseError;
 use serde::{Deserialize, Serialize};
 
-use crate::condition::HeatCondition;
+use crate::condition::{HeatCondition, HeatFunction};
 use crate::implicit::ImplicitHeat;
 use crate::ledger::HeatLedger;
 use crate::network::HeatNetwork;
+
+/// Instants at which an implicit step looks at its sources.
+const LOOKS: usize = 4;
 
 /// Temperatures of the points of a network, and what heats them.
 #[derive(Clone, Debug)]
@@ -111,7 +114,7 @@ impl HeatField {
 
     /// Advances temperatures by an explicit step of `dt` [s] (forward Euler).
     pub fn step(&mut self, dt: f64) {
-        let powers = self.find_flows(self.time);
+        let powers = self.find_flows([self.time]);
         self.time += dt;
         let HeatField { flow, temperature, network, held, .. } = self;
         for (i, capacity) in network.capacity().iter().enumerate() {
@@ -124,15 +127,20 @@ impl HeatField {
     }
 
     /// Advances temperatures to the time `to` [s], at any distance (backward Euler). Equal steps should lead to equal systems: the
-    /// difference of two times is rounded, by less than 1e-9 of it.
+    /// difference of two times is rounded, by less than 1e-9 of it. Sources count with their mean over the step, so that what begins or
+    /// ends within it brings its part.
     ///
     /// # Errors
     /// A system that was not solved.
     pub fn step_implicitly(&mut self, solver: &mut ImplicitHeat, to: f64) -> Result<(), SparseError> {
         let dt = without_noise(to - self.time);
+        let looks: [f64; LOOKS] = std::array::from_fn(|k| {
+            let share = (k as f64 + 0.5) / LOOKS as f64;
+            self.time + share * (to - self.time)
+        });
         self.time = to;
         let risen = self.prescribe();
-        let [supplied, convection] = self.find_flows(self.time);
+        let [supplied, convection] = self.find_flows(looks);
         let right = |i: usize| [if self.held[i] { 0.0 } else { dt * self.flow[i] }];
         let right: Vec<[f64; 1]> = (0..self.network.len()).map(right).collect();
         let change = solver.solve(&self.network, &self.exchange, &self.held, dt, &right)?;
@@ -182,10 +190,11 @@ impl HeatField {
         books.convection += dt * convection;
     }
 
-    /// Heat that flows into every point at the present temperatures [W]; sources and T∞ are those of `time` [s]. Returns the
-    /// powers of flows and of convection [W].
-    fn find_flows(&mut self, time: f64) -> [f64; 2] {
-        let HeatField { network, places, conditions, temperature, flow, .. } = self;
+    /// Heat that flows into every point at the present temperatures [W]; sources are the mean of those at `looks` [s], T∞ is that of
+    /// the present time. Returns the powers of flows and of convection [W].
+    fn find_flows<const N: usize>(&mut self, looks: [f64; N]) -> [f64; 2] {
+        let HeatField { network, places, conditions, temperature, flow, time, .. } = self;
+        let mean = |value: &HeatFunction, place: &Vec3| looks.iter().map(|&t| value(t, place)).sum::<f64>() / N as f64;
         network.flows(temperature, flow);
         let (mut supplied, mut convection) = (0.0, 0.0);
         for condition in conditions {
@@ -193,7 +202,7 @@ impl HeatField {
                 HeatCondition::Temperature { .. } => {}
                 HeatCondition::Supply { points, value } => {
                     for &(i, share) in points.iter() {
-                        let power = share * value(time, &places[i as usize]);
+                        let power = share * mean(value, &places[i as usize]);
                         flow[i as usize] += power;
                         supplied += power;
                     }
@@ -201,7 +210,7 @@ impl HeatField {
                 HeatCondition::Convection { points, coefficient, ambient } => {
                     for &(i, area) in points.iter() {
                         let i = i as usize;
-                        let power = *coefficient * area * (ambient(time, &places[i]) - temperature[i]);
+                        let power = *coefficient * area * (ambient(*time, &places[i]) - temperature[i]);
                         flow[i] += power;
                         convection += power;
                     }
@@ -267,6 +276,21 @@ mod tests {
         for (a, b) in explicit.temperature().iter().zip(implicit.temperature()) {
             assert!((a - b).abs() < 0.05, "{a} {b}");
         }
+    }
+
+    /// Long implicit steps bring the heat of a source that grows wholly, and that of one which ends within a step but for an eighth of it.
+    #[test]
+    fn a_source_that_ends_within_a_step_brings_its_heat() {
+        let brought = |source: fn(f64) -> f64| {
+            let mut field = bar(30, None);
+            field.conditions =
+                vec![HeatCondition::Supply { points: vec![(7, 1.0)], value: Arc::new(move |t, _| source(t)) }];
+            let mut solver = ImplicitHeat::default();
+            (1..=5).for_each(|step| field.step_implicitly(&mut solver, f64::from(step) * 20.0).unwrap());
+            field.ledger().supplied
+        };
+        assert!((brought(|t| 3.0 * t) / 15_000.0 - 1.0).abs() < 1e-12);
+        assert!((brought(|t| if t < 33.333 { 3.0 } else { 0.0 }) / 3.0 - 33.333).abs() <= 2.5);
     }
 
     #[test]

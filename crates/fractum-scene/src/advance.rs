@@ -28,9 +28,9 @@ pub(crate) fn advance(scene: &mut Scene, measure: bool, passed: &mut impl FnMut(
     work
 }
 
-/// Keeps apart what damping of nodes and particles takes in the second half of a run.
+/// Keeps apart what damping of nodes and particles takes in the second half of a stage.
 fn book_late_damping(scene: &mut Scene, work: &HalfSteps) {
-    if scene.settings.damping.is_off() || scene.clock.time < 0.5 * scene.settings.time_step.end {
+    if scene.settings.damping.is_off() || !scene.settings.time_step.is_late(scene.clock.time) {
         return;
     }
     let before = if scene.clock.begins_motion() { 0.0 } else { work.before.damping };

@@ -17,6 +17,10 @@ use crate::watch::{Notice, Site};
 const UNSTABLE_RATIO: f64 = 20.0;
 /// Share of the energy that changes of the step may bring or take, and friction may give, before a word is said.
 const VISIBLE_CHANGE: f64 = 5e-3;
+/// Share of the work that damping may take in the second half of a stage: what comes to rest before that has its time.
+const DAMPED: f64 = 0.05;
+/// Share of the energy that rigid shapes may take from solids that meet them.
+const STOPPED: f64 = 0.05;
 
 /// Part of the energy of in-situ stress below which an energy is what rounding leaves.
 pub(crate) const IN_SITU_ROUND_OFF: f64 = 1e-9;
@@ -125,12 +129,18 @@ fn close_balance(scene: &mut Scene) -> Result<(), StepError> {
     Ok(())
 }
 
-/// Errors of a run that have entries of their own, so that the ledger closes with them.
+/// Errors of a run that have entries of their own, so that the ledger closes with them, and what is taken from what should move.
 fn note_what_the_ledger_hides(scene: &mut Scene) {
-    // In the first half little may be in play yet.
-    let late = scene.clock.time > 0.5 * scene.settings.time_step.end;
+    let late = scene.settings.time_step.is_late(scene.clock.time);
     let scale = scene.ledger.scale;
-    if !late || scale <= 0.0 {
+    if scale <= 0.0 {
+        return;
+    }
+    let stopped = scene.books.stopped / scale;
+    if stopped > STOPPED {
+        scene.note(Notice::Stopped, Site::Scene, stopped);
+    }
+    if !late {
         return;
     }
     let changed = (scene.books.time_step / scale).abs();
@@ -141,6 +151,10 @@ fn note_what_the_ledger_hides(scene: &mut Scene) {
     let given = can_only_take.into_iter().map(|kind| -scene.ledger[kind] / scale).fold(0.0, f64::max);
     if given > VISIBLE_CHANGE {
         scene.note(Notice::Gained, Site::Scene, given);
+    }
+    let damped = scene.books.late_damping / scale;
+    if damped > DAMPED {
+        scene.note(Notice::Damping, Site::Scene, damped);
     }
 }
 

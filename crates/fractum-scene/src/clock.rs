@@ -10,8 +10,17 @@ pub struct TimeStepSettings {
     pub element_bound: bool,
     /// A step asked for by the user [s]; replaces `safety` times the stable step.
     pub fixed: Option<f64>,
-    /// End of the run [s].
+    /// Begin of the stage [s]; 0 in a run of one.
+    pub begin: f64,
+    /// End of the stage [s].
     pub end: f64,
+}
+
+impl TimeStepSettings {
+    /// Whether the second half of the stage has begun: in the first half little energy may be in play yet.
+    pub(crate) fn is_late(&self, time: f64) -> bool {
+        time > 0.5 * (self.begin + self.end)
+    }
 }
 
 /// Time, and the steps on both sides of it.

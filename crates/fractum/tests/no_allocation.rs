@@ -153,7 +153,7 @@ fn scene(solid: Solid, supports: Vec<Support>, loads: Vec<Load>, planes: Vec<Nod
     let debris = Debris::new(&solid, vec![ContactParameters::default(); solid.body_count()]);
     let surface: Vec<u32> = (0..).zip(&solid.reference).filter(|(_, p)| p.z < 1e-9).map(|(n, _)| n).collect();
     let settings = SceneSettings {
-        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, end: 1.0 },
+        time_step: TimeStepSettings { safety: 0.8, element_bound: false, fixed: None, begin: 0.0, end: 1.0 },
         damping: Default::default(),
         stiffness_time: 0.0,
         balance_stop: 1e-2,

@@ -62,6 +62,17 @@ fn place(file: &str, more: &str, content: &str) -> Workplace {
 }
 
 #[test]
+fn beads_in_millimetres_that_are_read_in_metres_are_told() {
+    for (unit, told) in [("unit = \"mm\"\n", false), ("", true)] {
+        let place = Workplace::new(&BEADS.replace("FILE", "beads.csv").replace("unit = \"mm\"\nMORE\n", unit));
+        fs::write(place.path("beads.csv"), "x,y,z,radius\n1,1,1,1\n4,1,1,1\n").unwrap();
+        let ended = place.fractum(&["check", "case.toml"]);
+        let warned = ended.stdout.contains("mean radius of 1 m") && ended.stdout.contains("[unit-of-length]");
+        assert_eq!((ended.code, warned), (Some(0), told), "{}{}", ended.stdout, ended.stderr);
+    }
+}
+
+#[test]
 fn particles_of_every_format_move_alike() {
     let mut first = None;
     for (format, content) in FILES {

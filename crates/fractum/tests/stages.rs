@@ -88,6 +88,30 @@ fn a_bar_released_from_rest_swings_with_its_own_period_and_keeps_its_energy() {
     assert_eq!(one["state_hash"], run(&place, "two", "2")["state_hash"]);
 }
 
+/// A short motion after a long rest: it has the rows of a run of its own, and damping is judged in its own second half.
+#[test]
+fn a_short_motion_after_a_long_rest_has_rows_of_its_own() {
+    let mesh = structured_box([8, 2, 2], Vec3::new(0.4, 0.12, 0.12), None);
+    let case = RELEASED
+        .replace("10 um*t/1 ms", "10 um*t/1 s")
+        .replace("end = \"1 ms\"", "end = \"1 s\"")
+        .replace("end = \"1.3 ms\"", "end = \"1.004 s\"\n[damping]\nmass = \"8000 1/s\"")
+        .replace("history = { every = \"2 us\" }\n", "")
+        .replace("checkpoint = { every = \"1 ms\" }\n", "");
+    let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    run(&place, "one", "1");
+    let rows = history(&place, "one", &["in_motion", "kinetic", "tip"]);
+    let moving: Vec<_> = rows.iter().filter(|row| row[0] == 1.0).collect();
+    assert!(moving.len() > 900, "{} rows in motion", moving.len());
+    assert!(moving.last().unwrap()[2].abs() < 1e-8, "it has come to rest: {:?}", moving.last());
+    assert_eq!(
+        summary(&place, "one")["warnings"].as_array().unwrap().len(),
+        0,
+        "{}",
+        summary(&place, "one")["warnings"]
+    );
+}
+
 #[test]
 fn a_run_with_stages_goes_on_in_either_with_the_same_bits() {
     let place =

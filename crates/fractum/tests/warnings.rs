@@ -150,6 +150,11 @@ history = { every = "20 us" }
 
 const WALL: &str =
     "[[bodies]]\nname = \"wall\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\npoint = [\"-0.1 mm\", 0, 0]\n";
+/// Bonds that a solid has not, and damage that a plate has not which does not deform.
+const FRACTURE: &str = "[materials.stone.fracture]\ntensile_strength = \"3 MPa\"\n[[bodies]]";
+const BROKEN_PLATE: &str = "[materials.glass]\ndensity = \"2500 kg/m^3\"\nyoung_modulus = \"70 GPa\"\npoisson_ratio = 0.2\n\
+[materials.glass.damage]\ntensile_strength = \"30 MPa\"\nfracture_energy = \"10 J/m^2\"\n\
+[[bodies]]\nname = \"plate\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"x\"\npoint = [\"-0.1 mm\", 0, 0]\nmaterial = \"glass\"\n[[bodies]]";
 const GRAVITY: &str = "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }\n[solver]";
 
 const DAMAGE: &str = "[materials.stone.damage]\ncriterion = \"rankine\"\ntensile_strength = \"3 MPa\"\nfracture_energy = \"100 J/m^2\"\n[[bodies]]";
@@ -263,6 +268,28 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         checked("coincident-nodes", halves(bar(), true), &[(support, &second(""))]),
         checked("no-contact", away(halves(plate(), true)), &[(support, &second(""))]),
         checked("unheld", bar(), &[("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", ""), (end, "end = \"4 ms\"")]),
+        checked(
+            "unheld",
+            bar(),
+            &[
+                ("fix = \"PLANE\"", "fix = \"x\""),
+                (end, "end = \"4 ms\""),
+                ("[solver]", "[[loads]]\ngroup = \"x+\"\nforce = { y = \"5 N\" }\n[solver]"),
+            ],
+        ),
+        checked(
+            "unheld",
+            bar(),
+            &[
+                ("fix = \"PLANE\"", "absorbing = true"),
+                (far_support, ""),
+                (end, "end = \"4 ms\""),
+                ("[solver]", "[[loads]]\ngravity = { x = \"-9.81 m/s^2\" }\n[solver]"),
+            ],
+        ),
+        checked("no-effect", bar(), &[("[[bodies]]", FRACTURE)]),
+        checked("no-effect", bar(), &[("[[bodies]]", BROKEN_PLATE)]),
+        checked("unused", bar(), &[("[[bodies]]", "[pulses]\ncut = \"1 MPa\"\n[[bodies]]")]),
         checked("thin-mesh", structured_rectangle([16, 2], [0.4, 0.05], None), &[("{ x = {", "{ y = {")]),
         checked("thin-mesh", structured_box([8, 8, 1], Vec3::new(0.4, 0.4, 0.02), None), &[("{ x = {", "{ z = {")]),
         checked("thin-mesh", structured_box([16, 2, 2], Vec3::new(0.4, 0.05, 0.05), None), &[("[solver]", GRAVITY)]),
@@ -277,6 +304,16 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         ),
         checked("jump", bar(), &[("[[bodies]]", DAMAGE), (ramp, "\"0.5 m/s\"")]),
         checked("unit-of-load", bar(), &[("[solver]", &load("pressure = 8"))]),
+        checked(
+            "unusual-value",
+            bar(),
+            &[(
+                "[solver]",
+                &load(
+                    "pressure = { pulse = \"half-sine\", peak = \"1 MPa\", duration = \"1 ms\" }\ndetonation = { velocity = \"4.5 m/s\", along = \"x\" }",
+                ),
+            )],
+        ),
         checked("unit-of-motion", bar(), &[(ramp, "\"10 km/s\"")]),
         checked("unusual-value", bar(), &[("density = \"2400 kg/m^3\"", "density = 2.4")]),
         checked("time-step", bar(), &[(end, "safety = 1.2\nend = \"0.3 ms\"")]),

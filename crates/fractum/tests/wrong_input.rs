@@ -493,6 +493,14 @@ fn functions_that_are_no_numbers_are_found_before_the_run() {
 }
 
 #[test]
+fn what_a_run_begins_with_is_a_number_everywhere() {
+    let word = ["expected a finite number wherever it is taken"];
+    let body = "group = \"body\"";
+    let case = with(body, &format!("{body}\ninitial_velocity = {{ x = \"1 mm/s*x/abs(x)\" }}"));
+    refused(&case, "\"1 mm/s*x/abs", "bodies[0].initial_velocity.x", &word);
+}
+
+#[test]
 fn steps_and_ends_out_of_all_proportion_are_found_before_the_run() {
     let case = with("end = \"2 ms\"", "end = \"2 ms\"\nstep = \"2 ms\"");
     refused(&case, "\"2 ms\"\n\n[[probes]]", "solver.step", &["is above the stable step", "lower it, or leave it out"]);

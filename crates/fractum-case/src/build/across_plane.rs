@@ -22,7 +22,7 @@ pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
         context.error(&place, ": 2D solids lie in the xy-plane and cannot move along z", "a component along x or y");
     }
     for part in parts.iter().filter(|part| part.shape == ElementKind::T3) {
-        if part.body.initial_velocity[Z].as_ref().is_some_and(|field| field.constant_value() != Some(0.0)) {
+        if part.body.initial_velocity[Z].as_ref().is_some_and(|field| field.value.constant_value() != Some(0.0)) {
             let found = format!(
                 "= \"{}\" begins with a velocity along z: 2D solids lie in the xy-plane",
                 part.body.group.value

@@ -220,7 +220,7 @@ impl Context<'_> {
         }
         for own in parts {
             let Some(field) = &own.body.initial_velocity[0] else { continue };
-            if nodes.iter().any(|&node| field.value(0.0, positions[node as usize]) != 0.0) {
+            if nodes.iter().any(|&node| field.value.at(positions[node as usize]) != 0.0) {
                 let found = format!("= \"{}\": its initial velocity has a radial component on the axis", own.name);
                 self.error(&own.place.clone(), found, "initial_velocity.x that is zero where x = 0");
             }

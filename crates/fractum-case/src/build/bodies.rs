@@ -409,7 +409,7 @@ pub(super) fn set_initial_velocity(context: &Context<'_>, solid: &mut Solid, par
             };
             for node in nodes {
                 let place = solid.reference[node as usize];
-                solid.velocity[node as usize][axis] = function.value(0.0, place);
+                solid.velocity[node as usize][axis] = function.value.at(place);
             }
         }
     }

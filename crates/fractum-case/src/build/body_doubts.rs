@@ -9,8 +9,8 @@ use fractum_mesh::bodies::{SLENDER, SolidElements};
 use fractum_output::number::{percent, quantity};
 use fractum_output::warning::Code;
 
-use crate::model::{BodyKind, Case, LoadKind, Motion, Selection, SolidBody, SolverKind};
-use crate::{Diagnostic, Place, Spanned};
+use crate::model::{BodyKind, Case, LoadKind, Motion, Selection, SolidBody, SolverKind, Support, SurfaceSupport};
+use crate::{Diagnostic, Place, Spanned, TimeFunction};
 
 /// Share of the deflection of a bent body above which it is told that its elements take it away.
 const TOO_STIFF: f64 = 0.05;
@@ -151,6 +151,58 @@ pub(super) fn moved_as_a_whole(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Opti
     );
     let note = Diagnostic::warning(Code::Unheld, one.place, found);
     Some(note.remedy(format!("hold another side along {along}")))
+}
+
+/// Solids in motion that lasting forces or a weight push along an axis along which no support holds them, though supports act on them.
+pub(super) fn pushed_away(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
+    let moves = case.solver.kind == SolverKind::Explicit && case.later.is_empty() && case.in_situ.is_none();
+    let thrown = bodies.iter().any(|body| body.solid.initial_velocity.iter().any(Option::is_some));
+    let flows = case.flows.gas.is_some() || case.flows.heat.is_some();
+    let pushed = flows || case.interfaces.iter().any(|interface| interface.pressure.is_some());
+    if bodies.is_empty() || !alone || !moves || thrown || pushed || case.supports.is_empty() || mesh.whole.is_some() {
+        return None;
+    }
+    if pieces(mesh, bodies).iter().any(|piece| *piece != 0) {
+        return None;
+    }
+    let (passage, end) = (passage(case, mesh, bodies), case.solver.end);
+    if end < PASSAGES * passage {
+        return None;
+    }
+    let lies_around = bodies.iter().any(|body| body.solid.is_axisymmetric());
+    let free = |axis: &usize| {
+        let springs = |support: &Support| {
+            support.surface.as_ref().is_some_and(|surface| surface.value != SurfaceSupport::Absorbing)
+        };
+        let held = case.supports.iter().any(|support| support.motion[*axis].is_some() || springs(support));
+        !(held || lies_around && *axis == 0)
+    };
+    // One sense of a push that lasts; none of one that ends or turns back.
+    let sense = |function: &TimeFunction| {
+        let at = |share: f64| function.value(share * end, Vec3::zeros());
+        let [middle, last] = [at(0.5), at(1.0)];
+        (!function.depends_on_position() && middle * last > 0.0).then(|| last.signum())
+    };
+    let (axis, place) = (0..3).filter(free).find_map(|axis| {
+        let mut along = case.loads.iter().filter_map(|load| match &load.kind {
+            LoadKind::Force { force: components, .. }
+            | LoadKind::Traction { traction: components, .. }
+            | LoadKind::Gravity { acceleration: components } => components[axis].as_ref(),
+            _ => None,
+        });
+        let first = along.next()?;
+        let one = sense(&first.value)?;
+        along.all(|other| sense(&other.value) == Some(one)).then_some((axis, &first.place))
+    })?;
+    let along = ["x", "y", "z"][axis];
+    let found = format!(
+        ": it pushes the bodies along {along}, along which nothing holds them: the run lasts {:.0} passages of a wave ({} each)",
+        end / passage,
+        quantity(passage, "s")
+    );
+    let note = Diagnostic::warning(Code::Unheld, place, found);
+    Some(note.remedy(format!("hold them along {along} somewhere; absorbing supports hold nothing")))
 }
 
 /// Speed of a wave along a bar of the material of a body [m/s].

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use fractum_dem::{Clumps, Particles};
 use fractum_math::Vec3;
+use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_pack::Domain;
 use fractum_prepare::PreparedBody;
@@ -12,8 +13,12 @@ use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
-use crate::model::{BodyKind, Material, Selection, TimeStep};
+use super::precheck::check_field;
+use crate::model::{BodyKind, BondedBody, Case, LooseBody, LooseSource, Material, PackingSource, Selection, TimeStep};
 use crate::{Diagnostic, Field, Spanned};
+
+/// Mean radius of the particles of a file from which on it is probably in millimetres [m].
+const LARGE_RADIUS: f64 = 0.5;
 
 /// A set of particles, ascending, with its name.
 pub(super) type NamedSet = (String, Vec<u32>);
@@ -42,6 +47,9 @@ impl Context<'_> {
             let count = made.particles.len() as u32;
             let motion = initial_motion(initial_velocity);
             if let Some(motion) = &motion {
+                for field in initial_velocity.iter().flatten() {
+                    check_field(self, field, seen(&made.particles));
+                }
                 set_motion(&mut made.particles, &mut made.clumps, motion);
             }
             if let Some(arrivals) = made.arrivals.take() {
@@ -184,12 +192,14 @@ fn flat_faces(material: &Material, [shift, out]: [Vec<Vec3>; 2]) -> Option<FlatF
 }
 
 /// Velocity of a field at a place [m/s], and its rate of rotation over a radius there, half the curl [rad/s]; none where all is at rest.
-fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [Vec3; 2] + Send + Sync + use<>> {
+fn initial_motion(
+    field: &[Option<Spanned<Field>>; 3],
+) -> Option<impl Fn(&Vec3, f64) -> [Vec3; 2] + Send + Sync + use<>> {
     if field.iter().all(Option::is_none) {
         return None;
     }
     let field = field.clone();
-    let velocity = move |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value(0.0, x)));
+    let velocity = move |x: Vec3| Vec3::from_fn(|axis, _| field[axis].as_ref().map_or(0.0, |f| f.value.at(x)));
     Some(move |x: &Vec3, h: f64| {
         // Central differences over the particle itself: what it would see of the motion.
         let slope = |axis: usize| {
@@ -199,6 +209,44 @@ fn initial_motion(field: &[Option<Field>; 3]) -> Option<impl Fn(&Vec3, f64) -> [
         };
         let [dx, dy, dz] = [slope(0), slope(1), slope(2)];
         [velocity(*x), Vec3::new(dy.z - dz.y, dz.x - dx.z, dx.y - dy.x) * 0.5]
+    })
+}
+
+/// Particles of files that are as large as if their unit were another one.
+pub(super) fn doubts_of_size(case: &Case, prepared: &[PreparedBody]) -> Vec<Diagnostic> {
+    let file = |kind: &'_ BodyKind| match kind {
+        BodyKind::Particles(LooseBody { source: LooseSource::File { file, unit, .. }, .. })
+        | BodyKind::Bonded(BondedBody { packing: PackingSource::Particles { file, unit, .. }, .. }) => {
+            Some(Some((file.name.clone(), *unit)))
+        }
+        BodyKind::Particles(_) | BodyKind::Bonded(_) => Some(None),
+        _ => None,
+    };
+    let files = case.bodies.iter().filter_map(|body| file(&body.kind));
+    let doubt = |(file, made): (Option<(Spanned<String>, f64)>, &PreparedBody)| {
+        let (name, unit) = file?;
+        let radii = &made.particles.radius;
+        let mean = radii.iter().sum::<f64>() / radii.len() as f64;
+        if unit != 1.0 || mean < LARGE_RADIUS {
+            return None;
+        }
+        let found = format!("= \"{}\": its particles have a mean radius of {}", name.value, quantity(mean, "m"));
+        let note = Diagnostic::warning(Code::UnitOfLength, &name.place, found);
+        let note = note.expected("lengths in metres, the unit where bodies[].unit names no other");
+        Some(note.remedy("if they are in millimetres, set unit = \"mm\" on the body"))
+    };
+    files.zip(prepared).filter_map(doubt).collect()
+}
+
+/// Places at which particles look at a field of velocity, see [`initial_motion`].
+fn seen(particles: &Particles) -> impl Iterator<Item = Vec3> {
+    particles.position.iter().zip(&particles.radius).flat_map(|(&x, &h)| {
+        let beside = move |axis: usize| {
+            let mut step = Vec3::zeros();
+            step[axis] = h;
+            [x + step, x - step]
+        };
+        std::iter::once(x).chain((0..3).flat_map(beside))
     })
 }
 

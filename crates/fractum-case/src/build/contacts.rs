@@ -11,6 +11,7 @@ use fractum_scene::{
 };
 
 use super::bodies::{Numbering, Part};
+use super::precheck::check_field;
 use super::{Context, function, periodic};
 use crate::model::{self, Body, BodyKind, InitialOverlap, LoadKind, RigidShape, ServoForce, SolverKind};
 use crate::{Diagnostic, Spanned};
@@ -319,6 +320,9 @@ pub(super) fn rigid_bodies(context: &mut Context<'_>, facets: Vec<PreparedFacets
             let mut rigid_body =
                 RigidBody::new(&body.name.value, form, frame, elastic, body.kind.surface(&context.case.materials));
             rigid_body.work_of_adhesion = rigid.work_of_adhesion;
+            for field in rigid.initial_velocity.iter().flatten() {
+                check_field(context, field, std::iter::once(rigid_body.frame.origin));
+            }
             drive(&mut rigid_body, rigid);
             rigid_bodies.push(rigid_body);
         }
@@ -476,7 +480,7 @@ fn drive(rigid_body: &mut RigidBody, rigid: &model::RigidBody) {
     }
     let start = rigid_body.frame.origin;
     rigid_body.frame.velocity =
-        Vec3::from_fn(|axis, _| rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value(0.0, start)));
+        Vec3::from_fn(|axis, _| rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value.at(start)));
     rigid_body.inertia = rigid.mass.map(|mass| Inertia { mass, tensor: inertia_tensor(&rigid.shape, mass) });
 }
 

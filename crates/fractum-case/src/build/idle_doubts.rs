@@ -9,7 +9,7 @@ use crate::measure::Count;
 use crate::model::{
     BodyKind, Case, Load, LoadKind, LooseSource, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
 };
-use crate::{Diagnostic, TimeFunction};
+use crate::{Diagnostic, Place, TimeFunction};
 
 /// Share of the area of facets along an axis below which they do not look along it.
 const FLAT: f64 = 1e-6;
@@ -123,7 +123,7 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
     };
     let body = |kind: &BodyKind| match kind {
         BodyKind::Solid(solid) => {
-            solid.initial_velocity.iter().flatten().any(|field| field.constant_value() != Some(0.0))
+            solid.initial_velocity.iter().flatten().any(|field| field.value.constant_value() != Some(0.0))
         }
         BodyKind::Rigid(rigid) => {
             let thrown = rigid.initial_velocity.iter().any(Option::is_some);
@@ -159,6 +159,34 @@ pub(super) fn unmoved(case: &Case) -> Option<Diagnostic> {
     );
     let note = Diagnostic::warning(Code::NoEffect, &name.place, found);
     Some(note.remedy("add [[loads]], or give a support a velocity or a displacement"))
+}
+
+/// Tables of materials that none of the bodies of the material reads, such as the strength of bonds in a solid.
+pub(super) fn tables_in_vain(case: &Case) -> Vec<Diagnostic> {
+    let doubts = case.materials.iter().enumerate().flat_map(|(index, material)| {
+        let bodies: Vec<&BodyKind> =
+            case.bodies.iter().map(|body| &body.kind).filter(|kind| kind.material() == Some(index)).collect();
+        let solid = bodies.iter().any(|kind| matches!(kind, BodyKind::Solid(_)));
+        let bonded = bodies.iter().any(|kind| matches!(kind, BodyKind::Bonded(_)));
+        let Material { damage, bedding, bonds, interfaces, fracture, .. } = material;
+        let of_solids = [damage.as_ref().map(|own| &own.place), bedding.as_ref().map(|own| &own.place)];
+        let of_bonds = [
+            bonds.as_ref().map(|own| &own.place),
+            interfaces.as_ref().map(|own| &own.place),
+            fracture.as_ref().map(|own| &own.place),
+        ];
+        let of_solids = of_solids.into_iter().flatten().filter(move |_| !solid);
+        let of_bonds = of_bonds.into_iter().flatten().filter(move |_| !bonded);
+        let told = |place: &Place, reader: &str, remedy: &str| {
+            let found = format!("is read by {reader} bodies alone, and no such body has this material");
+            Diagnostic::warning(Code::NoEffect, place, found).remedy(remedy)
+        };
+        let of_solids =
+            of_solids.map(move |place| told(place, "solid", "leave it out; bonds break by a table fracture"));
+        let of_bonds = of_bonds.map(move |place| told(place, "bonded", "leave it out; solids break by a table damage"));
+        if bodies.is_empty() { Vec::new() } else { of_solids.chain(of_bonds).collect() }
+    });
+    doubts.collect()
 }
 
 fn function_of(motion: &Motion) -> Option<&TimeFunction> {

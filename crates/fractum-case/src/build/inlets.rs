@@ -77,7 +77,7 @@ fn crossing_time(case: &Case, body: &LooseBody, stream: &Stream) -> Option<f64> 
         Region::Sphere { point, .. } => point,
     };
     let velocity =
-        Vec3::from_fn(|axis, _| body.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value(0.0, middle)));
+        Vec3::from_fn(|axis, _| body.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value.at(middle)));
     let mut gravity = Vec3::zeros();
     for load in &case.loads {
         if let LoadKind::Gravity { acceleration } = &load.kind {

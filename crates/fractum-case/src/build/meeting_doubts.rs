@@ -252,7 +252,7 @@ fn way(case: &Case, rigid: &RigidBody) -> Option<Vec<Vec3>> {
     }
     let step = case.solver.end / f64::from(LOOKS);
     let speed = |axis: usize, time: f64| {
-        let thrown = rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.at(Vec3::zeros()));
+        let thrown = rigid.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value.at(Vec3::zeros()));
         rigid.velocity[axis].as_ref().map_or(thrown, |own| own.value.value(time, Vec3::zeros()))
     };
     let mut offset = Vec3::zeros();

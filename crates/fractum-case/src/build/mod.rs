@@ -200,6 +200,7 @@ impl<'a> Context<'a> {
     fn build(&mut self, prepared: Vec<PreparedBody>, facets_of_tools: Vec<PreparedFacets>) -> Option<BuiltScene> {
         self.without_mistakes()?;
         let taken = ties::taken(self, &prepared);
+        let sizes = bonded::doubts_of_size(self.case, &prepared);
         let mut bonded = self.bonded(prepared)?;
         let mut parts = bodies::solid_parts(self)?;
         ties::take_out(self, &mut parts, &taken);
@@ -213,6 +214,7 @@ impl<'a> Context<'a> {
         let mut solid = self.solid(&parts, &numbering, &boundary)?;
         let mut warnings = bodies::length_warnings(self.case, &solid, &parts, &boundary);
         warnings.extend(bodies::weibull_warnings(self, &solid, &parts));
+        warnings.extend(sizes);
         bodies::set_initial_velocity(self, &mut solid, &parts, &numbering);
         let mut boundary_of_parts = contacts::facets_of_parts(self, &parts, &numbering);
         boundary_of_parts.iter_mut().for_each(|own| own.retain(|facet| !inner.contains(&interfaces::by_nodes(*facet))));
@@ -405,6 +407,7 @@ impl<'a> Context<'a> {
                 element_bound: solver.time_step == TimeStep::Element
                     || matches!(solver.kind, SolverKind::Static | SolverKind::Heat | SolverKind::Modes),
                 fixed: solver.step.as_ref().filter(|_| solver.statics.is_none()).map(|step| step.value),
+                begin: solver.begin,
                 end: solver.end,
             },
             damping: LocalDamping { local: self.case.damping.local, mass_rate: self.case.damping.mass },

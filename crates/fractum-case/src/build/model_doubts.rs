@@ -9,8 +9,8 @@ use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, thin, unheld};
-use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, taken_at_once, unmoved};
+use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, pushed_away, thin, unheld};
+use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, tables_in_vain, taken_at_once, unmoved};
 use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
@@ -66,7 +66,8 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(inlets::doubts(case));
     doubts.extend(periodic::doubts(case));
     doubts.extend(contact_pairs::in_vain(case, bodies.iter().any(|body| body.plane)));
-    doubts.extend(unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies)));
+    let unheld = unheld(case, mesh, &bodies).or_else(|| moved_as_a_whole(case, mesh, &bodies));
+    doubts.extend(unheld.or_else(|| pushed_away(case, mesh, &bodies)));
     let joined = pieces(mesh, &bodies);
     let is_alone = |piece: u32| joined.iter().filter(|other| **other == piece).count() == 1;
     doubts.extend(bodies.iter().zip(&joined).filter_map(|(body, &piece)| thin(case, mesh, body, is_alone(piece))));
@@ -79,6 +80,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(all_prescribed(case, mesh, &bodies));
     doubts.extend(doubts_of_in_situ(case, mesh, &bodies));
     doubts.extend(measured_in_vain(case));
+    doubts.extend(tables_in_vain(case));
     let mut begin = 0.0;
     for (before, stage) in std::iter::once(case).chain(&case.later).zip(&case.later) {
         doubts.extend(steps_between(before, stage));
@@ -289,11 +291,11 @@ fn torn_at_once(case: &Case, mesh: &Mesh, body: &Own) -> Option<Diagnostic> {
     let material = &case.materials[body.solid.material];
     let law = &material.damage.as_ref().filter(|_| body.solid.damage)?.value.law;
     let velocity = &body.solid.initial_velocity;
-    let varies = velocity.iter().flatten().any(|field| field.constant_value().is_none());
+    let varies = velocity.iter().flatten().any(|field| field.value.constant_value().is_none());
     if !varies || mesh.whole.is_some() || case.solver.kind != SolverKind::Explicit {
         return None;
     }
-    let at = |place: Vec3| Vec3::from_fn(|axis, _| velocity[axis].as_ref().map_or(0.0, |field| field.at(place)));
+    let at = |place: Vec3| Vec3::from_fn(|axis, _| velocity[axis].as_ref().map_or(0.0, |field| field.value.at(place)));
     let speeds: HashMap<u32, Vec3> = body.nodes.iter().map(|&node| (node, at(mesh.nodes[node as usize]))).collect();
     let parted = |nodes: &[u32]| -> Option<(f64, f64, Vec3)> {
         let pairs = (0..nodes.len()).flat_map(|i| (0..i).map(move |j| [nodes[i], nodes[j]]));

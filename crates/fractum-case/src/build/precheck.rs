@@ -13,7 +13,7 @@ use crate::model::{
     Body, BodyKind, BondLawKind, BondedShape, GroupUse, LoadKind, Motion, PackingSource, ProbeKind, RigidShape,
     Selection, SolverKind, WHOLE_MESH,
 };
-use crate::{Choice, Diagnostic, Spanned, TimeFunction, nearest};
+use crate::{Choice, Diagnostic, Field, Spanned, TimeFunction, nearest};
 
 /// Steps that a run can count without losing time to rounding.
 const MOST_STEPS: f64 = 1e15;
@@ -24,6 +24,7 @@ pub(super) fn check_before_particles(context: &mut Context<'_>) {
     check_names(context);
     check_particle_sets(context);
     check_time_functions(context);
+    check_fields(context);
     check_bonded_statics(context);
     check_contact_probes(context);
     check_heat_probes(context);
@@ -273,6 +274,27 @@ fn check_function<T>(context: &mut Context<'_>, function: &TimeFunction, written
     };
     let found = format!("is {value} at t = {}{at}", quantity(time, "s"));
     context.error(&written.place, found, "a finite number during the whole run");
+}
+
+/// What solids start with must be finite numbers at their nodes.
+fn check_fields(context: &mut Context<'_>) {
+    let (case, mesh) = (context.case, context.mesh);
+    let heat = case.flows.heat.as_ref().map(|heat| &heat.initial);
+    for body in &case.bodies {
+        let BodyKind::Solid(solid) = &body.kind else { continue };
+        let nodes = mesh.group_nodes(&solid.group.value);
+        for field in solid.initial_velocity.iter().flatten().chain(heat) {
+            check_field(context, field, nodes.iter().map(|&node| mesh.nodes[node as usize]));
+        }
+    }
+}
+
+/// A field must be a finite number at all places where it is taken; the first one where it is not is told.
+pub(super) fn check_field(context: &mut Context<'_>, field: &Spanned<Field>, places: impl Iterator<Item = Vec3>) {
+    let mut values = places.map(|x| (x, field.value.at(x)));
+    let Some((x, value)) = values.find(|(_, value)| !value.is_finite()) else { return };
+    let found = format!("is {value} at ({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z);
+    context.error(&field.place, found, "a finite number wherever it is taken");
 }
 
 /// What a bonded body at rest cannot have.

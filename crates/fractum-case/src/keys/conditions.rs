@@ -30,7 +30,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("loads[].stages", K::Names, "all", "Stages in which it acts"),
     key("loads[].group", K::Text, "", "Mesh group or set of particles; required without `where`, but for gravity, which acts on the whole scene"),
     key("loads[].where", K::Condition, "", "Which nodes or particles, by their positions at the start, and which facets, by all of their nodes; without `group`: which of all solid bodies"),
-    key("loads[].force", K::Table, "", "Total force over the group, by components: facets share it by their area, elements by their volume, lines by their length, particles by their cross-sections"),
+    key("loads[].force", K::Table, "", "Total force over the group, by components: facets share it by their area, elements by their volume, lines by their length, points alike, particles by their cross-sections"),
     key("loads[].force.x", K::TimeFunction(D::FORCE), "0", "Component along x"),
     key("loads[].force.y", K::TimeFunction(D::FORCE), "0", "Component along y"),
     key("loads[].force.z", K::TimeFunction(D::FORCE), "0", "Component along z"),

@@ -18,7 +18,7 @@ pub(super) static FIRST: &[KeyDoc] = &[
 pub(super) static LAST: &[KeyDoc] = &[
     key("output.fields.pieces", K::Quantity(D::NONE), "1", "Files that solids and particles of a frame are cut into, 1 to 4096. Beyond 1 a .pvtu or .pvtp lists them, and several processes share the work of writing them"),
     key("output.history", K::Table, "", "Rows of history.csv"),
-    key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0"),
+    key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0. With several stages the default is 1/1000 of those in motion; every state at rest is a row"),
     key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),
     key("output.checkpoint.every", K::Quantity(D::TIME), "\"10 min\"", "Wall-clock time between checkpoints, > 0"),
     key("output.checkpoint.steps", K::Integer, "", "Steps after each of which a checkpoint is saved as well, >= 1: places that do not depend on the clock"),

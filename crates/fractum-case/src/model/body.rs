@@ -73,7 +73,7 @@ pub struct SolidBody {
     /// The thickness, or what stands for it where none is given [m].
     pub depth: f64,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
-    pub initial_velocity: [Option<Field>; 3],
+    pub initial_velocity: [Option<Spanned<Field>>; 3],
     /// Whether damage may occur at all: the material has it, and the body does not switch it off.
     pub damage: bool,
     /// Where damage may occur (a condition on the position); `None` = everywhere.

@@ -32,7 +32,7 @@ pub struct BondedBody {
     /// Sets of its particles by name, each with a condition on the position.
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
-    pub initial_velocity: [Option<Field>; 3],
+    pub initial_velocity: [Option<Spanned<Field>>; 3],
 }
 
 impl BondedBody {

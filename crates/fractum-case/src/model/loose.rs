@@ -19,7 +19,7 @@ pub struct LooseBody {
     /// Sets of its particles by name, each with a condition on the position.
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.
-    pub initial_velocity: [Option<Field>; 3],
+    pub initial_velocity: [Option<Spanned<Field>>; 3],
 }
 
 /// Where loose particles come from.

@@ -15,6 +15,8 @@ pub struct Output {
     pub frame_pieces: usize,
     /// Time between rows of the history [s].
     pub history_every: f64,
+    /// Whether the case gives that time.
+    pub gives_history: bool,
     /// Wall time between checkpoints [s].
     pub checkpoint_every: f64,
     /// Steps after each of which a checkpoint is saved as well, from 1.

@@ -36,7 +36,7 @@ pub struct RigidBody {
     /// How it presses with a given force.
     pub servo: Option<Servo>,
     /// Velocity [m/s] at the start along its free axes; `None` = at rest.
-    pub initial_velocity: [Option<Field>; 3],
+    pub initial_velocity: [Option<Spanned<Field>>; 3],
 }
 
 /// How a rigid body presses along an axis with a given force.

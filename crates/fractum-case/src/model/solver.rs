@@ -14,7 +14,9 @@ pub struct Solver {
     pub kind: SolverKind,
     /// Where it is written.
     pub place: Place,
-    /// End of the run [s], > 0.
+    /// Begin of the stage [s]; 0 in a run of one.
+    pub begin: f64,
+    /// End of the run or stage [s], > 0.
     pub end: f64,
     /// Where its end is written.
     pub end_place: Place,

@@ -175,7 +175,12 @@ pub(super) fn loads(root: &Table<'_>) -> Option<Vec<Load>> {
     // A firing sequence gives its name to the pressures of all its holes.
     let names = loads.iter().flatten().filter_map(|loads| loads.first()?.name.as_ref());
     let unique = unique(root, names);
-    Some(loads.into_iter().collect::<Option<Vec<_>>>().filter(|_| unique)?.into_iter().flatten().collect())
+    let loads = loads.into_iter().collect::<Option<Vec<_>>>().filter(|_| unique)?;
+    if !root.has("stages") {
+        // The other stages may have them.
+        pulses.tell_unused(root.reader);
+    }
+    Some(loads.into_iter().flatten().collect())
 }
 
 fn load(table: Table<'_>, pulses: &Pulses) -> Option<Vec<Load>> {

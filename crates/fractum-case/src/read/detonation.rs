@@ -11,6 +11,7 @@ use crate::model::{Detonation, InCracks};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{direction, point};
+use crate::usual::DETONATION;
 
 /// Where and when a pressure acts beside its facets and time.
 #[derive(Clone, Copy)]
@@ -22,7 +23,7 @@ pub(super) struct Acts {
 /// The front of a pressure; nothing where it is wrong.
 pub(super) fn detonation(load: &Table<'_>) -> Option<Option<Detonation>> {
     let Some(table) = load.table("detonation") else { return Some(None) };
-    let velocity = table.quantity("velocity").positive().required();
+    let velocity = table.quantity("velocity").positive().usual(&DETONATION).required();
     let along = optional(&table, "along", |key| direction(&table, key).given());
     let primer = optional(&table, "primer", |key| point(&table, key).given());
     if !table.has("along") && !table.has("primer") {

@@ -1,11 +1,15 @@
 //! `[pulses]` and firing sequences: which hole fires when, with which pressure.
 
+use std::cell::Cell;
+
+use fractum_output::warning::Code;
+
 use super::detonation::{Acts, DelayScatter};
 use super::table_file;
 use super::time_functions::time_function_of;
 use crate::model::{Load, LoadKind, Selection};
 use crate::reader::{Reader, Table};
-use crate::tree::{Node, Value};
+use crate::tree::{Entry, Node, Value};
 use crate::unit::Dimension;
 use crate::{Diagnostic, Place, Spanned, TimeFunction};
 
@@ -14,14 +18,29 @@ const MOST_ROWS: usize = 100_000;
 /// Mistakes of a file that are shown: one of the wrong kind would fill the screen.
 const MOST_SHOWN: usize = 5;
 
-/// Pressures over time by their names; none for one with a mistake.
-pub(super) struct Pulses(Vec<(String, Option<TimeFunction>)>);
+/// Pressures over time by their names.
+pub(super) struct Pulses(Vec<Pulse>);
+
+struct Pulse {
+    name: String,
+    place: Place,
+    /// None with a mistake.
+    pressure: Option<TimeFunction>,
+    /// Whether a row of a sequence has it.
+    is_used: Cell<bool>,
+}
 
 /// Reads `[pulses]`.
 pub(super) fn pulses(root: &Table<'_>) -> Pulses {
     let Some(table) = root.table("pulses") else { return Pulses(Vec::new()) };
     let read = |node: &Node| time_function_of(root.reader, node, Dimension::PRESSURE);
-    let pulses = table.entries().map(|entry| (entry.name.clone(), read(&entry.node))).collect();
+    let pulse = |entry: &Entry| Pulse {
+        name: entry.name.clone(),
+        place: entry.key_place.clone(),
+        pressure: read(&entry.node),
+        is_used: Cell::new(false),
+    };
+    let pulses = table.entries().map(pulse).collect();
     table.finish("here");
     Pulses(pulses)
 }
@@ -79,13 +98,22 @@ fn delay_of(reader: &Reader, node: &Node) -> Option<f64> {
 }
 
 impl Pulses {
+    /// Notes those that no row has.
+    pub(super) fn tell_unused(&self, reader: &Reader) {
+        for pulse in self.0.iter().filter(|pulse| !pulse.is_used.get()) {
+            let note = Diagnostic::warning(Code::Unused, &pulse.place, "is not used by any firing sequence");
+            reader.note(note.remedy("name it in a row of loads[].firing, or leave it out"));
+        }
+    }
+
     fn find(&self, reader: &Reader, node: &Node) -> Option<TimeFunction> {
         let Value::Text(name) = &node.value else { return None };
-        if let Some((_, pulse)) = self.0.iter().find(|(known, _)| known == name) {
-            return pulse.clone();
+        if let Some(pulse) = self.0.iter().find(|pulse| pulse.name == *name) {
+            pulse.is_used.set(true);
+            return pulse.pressure.clone();
         }
         let note = Diagnostic::error(&node.place, node.found()).expected("the name of a pulse of [pulses]");
-        let names = self.0.iter().map(|(known, _)| known.as_str());
+        let names = self.0.iter().map(|pulse| pulse.name.as_str());
         reader.note(reader.suggest(note, name, names, "pulses here"));
         None
     }

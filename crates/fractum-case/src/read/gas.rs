@@ -2,11 +2,13 @@
 
 use fractum_scene::{Amount, Charge, EquationOfState, Explosive, Jwl, NobleAbel, PerfectGas, SlitFlow, Stemming};
 
+use super::heat::doubt_kelvin;
 use super::time_functions::time_function;
 use crate::model::{Gas, GasHole, GasLaw, Preset, Solver, SolverKind};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::selection::selection;
+use crate::usual::{DETONATION, GAS_CONSTANT, GAS_PRESSURE, HEAT_RATIO};
 use crate::{Diagnostic, Spanned, TimeFunction};
 
 /// Reads the gas, if there is any; nothing where it is wrong. It acts in stages of motion.
@@ -81,8 +83,8 @@ fn law(table: &Table<'_>, kind: GasLaw, explosive: Option<Explosive>) -> Option<
         return law.map(EquationOfState::Jwl);
     }
     table.refuse("jwl", "with this law");
-    let heat_ratio = table.quantity("heat_ratio").check(|ratio| *ratio > 1.0, "above 1").required();
-    let gas_constant = table.quantity("gas_constant").positive().required();
+    let heat_ratio = table.quantity("heat_ratio").check(|ratio| *ratio > 1.0, "above 1").usual(&HEAT_RATIO).required();
+    let gas_constant = table.quantity("gas_constant").positive().usual(&GAS_CONSTANT).required();
     if kind == GasLaw::PerfectGas {
         table.refuse("covolume", "with law = \"perfect-gas\"");
         return Some(EquationOfState::PerfectGas(PerfectGas { heat_ratio: heat_ratio?, gas_constant: gas_constant? }));
@@ -143,8 +145,9 @@ fn charge(table: &Table<'_>, with_state: bool, explosive: Option<Explosive>) -> 
             }
             return None;
         }
-        let pressure = table.quantity("pressure").not_negative().required();
+        let pressure = table.quantity("pressure").not_negative().usual(&GAS_PRESSURE).required();
         let temperature = table.quantity("temperature").positive().required();
+        doubt_kelvin(table, "temperature");
         return Some(Charge::State { pressure: pressure?, temperature: temperature? });
     }
     let mass = table.quantity("mass").not_negative().required();
@@ -172,7 +175,7 @@ fn burning(table: &Table<'_>, explosive: Option<Explosive>) -> Option<Option<Bur
     let Some(inner) = table.table("detonation") else { return Some(None) };
     let length = inner.quantity("length").positive().required();
     let delay = inner.quantity("delay").not_negative().or_if_absent(0.0);
-    let velocity = inner.quantity("velocity").positive();
+    let velocity = inner.quantity("velocity").positive().usual(&DETONATION);
     let velocity = match explosive {
         Some(explosive) => velocity.or_if_absent(explosive.velocity),
         None => velocity.required(),

@@ -31,7 +31,7 @@ pub(super) fn thermal(material: &Table<'_>) -> Option<Option<Spanned<Thermal>>> 
 const CELSIUS: std::ops::Range<f64> = -273.15..200.0;
 
 /// Warns of a temperature without a unit that was probably meant in degrees Celsius.
-fn doubt_kelvin(table: &Table<'_>, name: &str) {
+pub(super) fn doubt_kelvin(table: &Table<'_>, name: &str) {
     let Some(node) = table.node_below(name) else { return };
     let Some(number) = node.bare_number().filter(|number| CELSIUS.contains(number)) else { return };
     let note = Diagnostic::warning(Code::UnusualValue, &node.place, format!("{}, which is in kelvin", node.found()));

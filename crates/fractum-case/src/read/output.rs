@@ -7,9 +7,10 @@ use crate::Diagnostic;
 use crate::model::{Output, Plot};
 use crate::reader::Table;
 
-/// Frames of fields and rows of the history where nothing is said.
+/// Frames of fields where nothing is said.
 const FRAMES: f64 = 50.0;
-const ROWS: f64 = 1000.0;
+/// Rows of the history where nothing is said; of its stages in motion where a run has several.
+pub(super) const ROWS: f64 = 1000.0;
 /// Most files that a frame may be cut into.
 const MOST_PIECES: u64 = 4096;
 /// Wall time between checkpoints where nothing is said [s].
@@ -73,6 +74,7 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
         fields_every: fields.unwrap_or(end / FRAMES),
         frame_pieces: pieces as usize,
         history_every: history.unwrap_or(end / ROWS),
+        gives_history: history.is_some(),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),
         checkpoint_steps: steps,
         joined_below,

@@ -141,6 +141,7 @@ pub(super) fn read(root: &Table<'_>, probes: &[ReadProbe], bodies: Option<&[Body
         kind: kind?,
         place,
         end: end?,
+        begin: 0.0,
         end_place,
         safety,
         time_step,

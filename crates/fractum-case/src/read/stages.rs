@@ -2,6 +2,7 @@
 
 use super::super::tree::{Entry, Node, Value};
 use super::excavation;
+use super::output::ROWS;
 use crate::model::{Body, BodyKind, Case, SolverKind};
 use crate::reader::{Reader, Table};
 use crate::{Diagnostic, Spanned};
@@ -119,6 +120,9 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
             reader.note(Diagnostic::error(&case.place, found).remedy("one clock runs through all stages"));
         }
     }
+    for stage in 1..cases.len() {
+        cases[stage].solver.begin = cases[stage - 1].solver.end;
+    }
     excavation::join(reader, &mut cases);
     if cases.len() > 1 {
         let particles = |body: &&Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
@@ -135,7 +139,13 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
             reader.note(note.expected("one [solver] without stages"));
         }
     }
-    let output = cases.last()?.output.clone();
+    let mut output = cases.last()?.output.clone();
+    let moving = cases.iter().filter(|case| case.solver.kind == SolverKind::Explicit);
+    let in_motion: f64 = moving.map(|case| case.solver.end - case.solver.begin).sum();
+    if cases.len() > 1 && !output.gives_history && in_motion > 0.0 {
+        // Every state at rest is a row anyway.
+        output.history_every = in_motion / ROWS;
+    }
     cases.iter_mut().for_each(|case| case.output = output.clone());
     let later = cases.split_off(1);
     Some(Case { later, ..cases.pop()? })

@@ -6,7 +6,7 @@ use crate::expression::Type;
 use crate::reader::{Reader, Reading, Table};
 use crate::tree::{Node, Value};
 use crate::unit::Dimension;
-use crate::{Diagnostic, Field};
+use crate::{Diagnostic, Field, Spanned};
 
 /// Names of the axes.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
@@ -80,11 +80,11 @@ pub(crate) fn components<T>(
 }
 
 /// Takes the velocity at the start by components; none where the key is absent.
-pub(crate) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Field>; 3]> {
+pub(crate) fn initial_velocity(body: &Table<'_>) -> Option<[Option<Spanned<Field>>; 3]> {
     if !body.has("initial_velocity") {
         return Some([None, None, None]);
     }
-    components(body, "initial_velocity", |table, axis| field(table, axis).given())
+    components(body, "initial_velocity", |table, axis| field(table, axis).spanned().given())
 }
 
 /// Takes an expression of x, y, z.

@@ -68,8 +68,8 @@ fn a_case_with_every_key_is_read_into_si() {
     let BodyKind::Solid(block) = &case.bodies[0].kind else { panic!() };
     let here = Vec3::new(0.05, -0.07, 0.0);
     assert_eq!((block.formulation, block.material, block.damage), (Formulation::Standard, 0, true));
-    assert_eq!(block.initial_velocity[1].as_ref().unwrap().at(here), 0.5);
-    assert_eq!(block.initial_velocity[2].as_ref().unwrap().at(here), -0.5);
+    assert_eq!(block.initial_velocity[1].as_ref().unwrap().value.at(here), 0.5);
+    assert_eq!(block.initial_velocity[2].as_ref().unwrap().value.at(here), -0.5);
     let zone = &block.damage_where.as_ref().unwrap().value;
     assert!(zone.holds_at(here) && !zone.holds_at(Vec3::new(0.0, 0.09, 0.0)) && !zone.holds_at(-here));
     assert!((block.strength_factor.as_ref().unwrap().value.at(Vec3::new(0.025, 0.0, 0.0)) - 1.1).abs() < 1e-15);
@@ -194,6 +194,15 @@ fn risky_settings_are_warned_of() {
         ["materials.idle"]
     );
     assert_eq!(warned(&format!("{SMALL}[output.fields]\nevery = 1\n")), ["output.fields.every"]);
+    let gas = |ratio: f64, constant: &str, pressure: &str, temperature: &str| {
+        warned(&format!(
+            "{SMALL}[gas]\nheat_ratio = {ratio}\ngas_constant = \"{constant}\"\n[[gas.holes]]\ngroup = \"a\"\npressure = \"{pressure}\"\ntemperature = {temperature}\n"
+        ))
+    };
+    assert_eq!(gas(1.25, "320 J/(kg K)", "80 MPa", "2500"), Vec::<String>::new());
+    assert_eq!(gas(1.25, "320 J/(kg K)", "0 MPa", "2500"), Vec::<String>::new());
+    let mistaken = ["gas.heat_ratio", "gas.gas_constant", "gas.holes[0].pressure", "gas.holes[0].temperature"];
+    assert_eq!(gas(125.0, "8.314 J/(kg K)", "80 Pa", "20"), mistaken);
     let often = |every: &str| format!("{SMALL}[output.checkpoint]\nevery = \"{every}\"\n");
     assert_eq!(warned(&often("25 us")), ["output.checkpoint.every"]);
     let by_steps = parse(&format!("{SMALL}[output.checkpoint]\nsteps = 500\n"), &[]).unwrap();

@@ -379,7 +379,7 @@ mod tests {
         assert!(layer.least_gap.abs() < 1e-12);
         let debris = Debris::new(&solid, vec![crate::ContactParameters::default()]);
         let settings = SceneSettings {
-            time_step: TimeStepSettings { safety: 0.5, element_bound: false, fixed: None, end: 1.0 },
+            time_step: TimeStepSettings { safety: 0.5, element_bound: false, fixed: None, begin: 0.0, end: 1.0 },
             damping: LocalDamping::default(),
             stiffness_time: 0.0,
             balance_stop: 1e-2,

@@ -7,10 +7,6 @@ use crate::ledger::EnergyKind;
 use crate::scene::Scene;
 use crate::watch::{Notice, Noticed, Site};
 
-/// Share of the work that damping may take in the second half of a run: what comes to rest before that has its time.
-const DAMPED: f64 = 0.05;
-/// Share of the energy that rigid shapes may take from solids that meet them.
-const STOPPED: f64 = 0.05;
 /// Share of the elastic energy of contact and solids, over the run so far, that the springs of contact may hold: a force lacks it.
 const SOFT: f64 = 0.05;
 /// Rotation of a body of small strains [rad], 10 degrees: it adds a strain of 1.5 %.
@@ -33,7 +29,6 @@ impl Scene {
     /// Looks whether the present state is still one that the models of the scene know. Nothing of the state changes.
     pub fn audit(&mut self) {
         look_at_temperatures(self);
-        look_at_damping(self);
         look_at_springs(self);
         look_at_solids(self);
         look_at_bonds(self);
@@ -80,17 +75,6 @@ fn has_noticed(scene: &Scene, what: Notice) -> bool {
     scene.optional.watch.first[what as usize].is_some()
 }
 
-fn look_at_damping(scene: &mut Scene) {
-    let share = scene.books.late_damping / scene.ledger.scale;
-    if scene.ledger.scale > 0.0 && share > DAMPED {
-        scene.note(Notice::Damping, Site::Scene, share);
-    }
-    let share = scene.books.stopped / scene.ledger.scale;
-    if scene.ledger.scale > 0.0 && share > STOPPED {
-        scene.note(Notice::Stopped, Site::Scene, share);
-    }
-}
-
 /// Looks at what the springs of contact hold beside the solids, as long as nothing else touches.
 fn look_at_springs(scene: &mut Scene) {
     let alone = scene.debris.is_empty() && scene.bonded.particles.is_empty() && scene.solid.body_count() > 0;
@@ -102,7 +86,7 @@ fn look_at_springs(scene: &mut Scene) {
     *solids += scene.ledger[EnergyKind::Elastic];
     let share = *springs / (*springs + *solids);
     // An impact is over in the first half of the run.
-    if scene.clock.time > 0.5 * scene.settings.time_step.end && *springs > 0.0 && share > SOFT {
+    if scene.settings.time_step.is_late(scene.clock.time) && *springs > 0.0 && share > SOFT {
         scene.note(Notice::Springs, Site::Scene, share);
     }
 }
