@@ -52,6 +52,7 @@ fn part(name: &str, particles: Particles, bonded: bool, strength: Option<f64>) -
         density: 2400.0,
         fraction: 0.6,
         fracture: strength.map(breaking),
+        clumps: fractum_dem::Clumps::default(),
     }
 }
 

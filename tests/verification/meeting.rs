@@ -109,6 +109,7 @@ pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
             density: 2400.0,
             fraction: 1.0,
             fracture: None,
+            clumps: fractum_dem::Clumps::default(),
         };
         bonded = Bonded::new(vec![part]).unwrap();
         let elastic = ElasticMaterial { young_modulus: 10e9, poisson_ratio: 0.2 };
@@ -447,6 +448,7 @@ fn flat_cube(velocity: Vec3, spin: Vec3) -> Scene {
         density: 2400.0,
         fraction: 0.6,
         fracture: None,
+        clumps: fractum_dem::Clumps::default(),
     };
     let bonded = Bonded::new(vec![part]).unwrap();
     let elastic = ElasticMaterial { young_modulus: 1e9, poisson_ratio: 0.2 };
@@ -455,7 +457,7 @@ fn flat_cube(velocity: Vec3, spin: Vec3) -> Scene {
     let materials = vec![ContactMaterial { elastic, density: 2400.0, surface: SURFACE, work_of_adhesion: 0.0 }];
     let mut contacts = Contacts::new(&bonded, materials, vec![plane], Vec::new(), Vec::new());
     let shift = cells().map(|cell| cell * FACE).collect();
-    let faces = FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift };
+    let faces = FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift, out: Vec::new() };
     assert_eq!(contacts.flatten(vec![Some(faces)], &bonded.particles), Vec::new());
     let solid = Solid::new(Vec::new(), Vec::new()).unwrap();
     let debris = Debris::new(&solid, Vec::new());

@@ -177,6 +177,7 @@ fn part(particles: Particles, bonds: usize) -> BondedPart {
         density: 1000.0,
         fraction: 0.64,
         fracture: None,
+        clumps: fractum_dem::Clumps::default(),
     }
 }
 

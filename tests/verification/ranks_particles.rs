@@ -56,6 +56,7 @@ fn body(name: &str, cells: [usize; 3], from: Vec3, speed: f64, law: impl Into<An
         density: 2400.0,
         fraction: 0.6,
         fracture: None,
+        clumps: fractum_dem::Clumps::default(),
     }
 }
 
@@ -81,7 +82,7 @@ fn scene(bonded: Bonded, rigid_bodies: Vec<RigidBody>, settings: SceneSettings, 
     let mut contacts = Contacts::new(&bonded, materials, rigid_bodies, Vec::new(), Vec::new());
     let flat = |body: &fractum_scene::BondedBody| {
         let shift = body.range.clone().map(|_| Vec3::z() * (-0.02 * RADIUS)).collect();
-        (!body.bonds.is_empty()).then_some(FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift })
+        (!body.bonds.is_empty()).then_some(FlatFaces { young_modulus: 1e9, poisson_ratio: 0.2, shift, out: Vec::new() })
     };
     contacts.flatten(bonded.bodies().iter().map(flat).collect(), &bonded.particles);
     let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &[]).unwrap());

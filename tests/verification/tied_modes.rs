@@ -41,6 +41,7 @@ fn half_bonded(size: f64, poisson_ratio: f64, seed: usize, ties: bool, clamped: 
         density: 2400.0,
         fraction: 1.0,
         fracture: None,
+        clumps: fractum_dem::Clumps::default(),
     };
     let facets: Vec<[u32; 3]> =
         topology::boundary_of_tetrahedra(&solid.body(0).elements).iter().map(|facet| facet.nodes).collect();
