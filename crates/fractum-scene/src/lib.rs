@@ -101,4 +101,4 @@ pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::StepReport;
 pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
-pub use watch::{Notice, Noticed, Site};
+pub use watch::{Notice, Noticed, Site, Watch, restore_watch, watch_of};

@@ -3,8 +3,12 @@
 //! [`Scene::audit`](crate::Scene::audit) looks at the present state now and then; what a step finds by itself is noted with
 //! [`Scene::note`](crate::Scene::note). A program turns what was noticed into words.
 
+use serde::{Deserialize, Serialize};
+
+use crate::Scene;
+
 /// The kinds of what a scene notices.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Notice {
     /// A temperature below absolute zero [K].
     BelowZero,
@@ -45,7 +49,7 @@ impl Notice {
 }
 
 /// Where something was noticed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Site {
     /// In the scene as a whole.
     Scene,
@@ -65,7 +69,7 @@ pub enum Site {
 }
 
 /// Something that was noticed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Noticed {
     /// What it is.
     pub what: Notice,
@@ -78,9 +82,19 @@ pub struct Noticed {
 }
 
 /// What a scene has noticed so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Watch {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Watch {
     pub(crate) first: [Option<Noticed>; Notice::COUNT],
     /// The largest overlap, whether it is worth a word or not.
     pub(crate) deepest: Option<Noticed>,
+}
+
+/// What a scene has noticed so far, for a checkpoint: some of it may not have been told yet.
+pub fn watch_of(scene: &Scene) -> Watch {
+    scene.optional.watch
+}
+
+/// Puts back what a scene built from the same case had noticed.
+pub fn restore_watch(scene: &mut Scene, watch: Watch) {
+    scene.optional.watch = watch;
 }

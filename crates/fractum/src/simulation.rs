@@ -29,7 +29,8 @@ use fractum_output::summary::Summary;
 use fractum_output::warning::Warning;
 use fractum_prepare::Cache;
 use fractum_scene::{
-    EnergyKind, HeatState, PeriodicState, Scene, SceneState, StepError, SubcyclingState, periodic_state, ranks,
+    EnergyKind, HeatState, PeriodicState, Scene, SceneState, StepError, SubcyclingState, Watch, periodic_state, ranks,
+    watch_of,
 };
 use fractum_vtk::Compression;
 use serde::{Deserialize, Serialize};
@@ -156,6 +157,7 @@ struct RunState<'a> {
     heat: Option<HeatState>,
     subcycling: Option<SubcyclingState>,
     periodic: Option<PeriodicState>,
+    noticed: Watch,
     /// What the steps so far have brought.
     warnings: Cow<'a, [Warning]>,
     record: Cow<'a, RecordState>,
@@ -401,6 +403,7 @@ impl Simulation {
             heat,
             subcycling,
             periodic: periodic_state(&self.scene),
+            noticed: watch_of(&self.scene),
             warnings: Cow::Borrowed(self.messages.of_steps()),
             record: Cow::Borrowed(record),
             later,

@@ -103,6 +103,21 @@ fn a_resumed_run_has_the_warnings_of_the_steps_before_it() {
     assert_eq!(log.matches("[below-zero]").count(), 2, "once for each of both runs: {log}");
 }
 
+/// What a step has noticed is told at the next look, or at the end: a state in between has it.
+#[test]
+fn what_was_noticed_but_not_told_outlives_a_resume() {
+    let text = BAR.replace("PLANE", "x").replace("every = \"20 us\"", "every = \"1 us\"");
+    let place = Workplace::new(&(text + "checkpoint = { steps = 1 }\n[damping]\nmass = \"20000 1/s\"\n"));
+    fs::write(place.path("bar.msh"), mesh_bytes(&bar(), MshFormat::V4_1Binary)).unwrap();
+    let whole = run(&place, "out", "1");
+    let steps = whole["time"]["steps"].as_u64().unwrap();
+    assert!(steps < 128, "no look before the end: {steps} steps");
+    let before = listed(&place, "out");
+    assert!(before.iter().any(|[code, ..]| code == "damping"), "{before:?}");
+    resumed(&place, "out");
+    assert_eq!(listed(&place, "out"), before);
+}
+
 #[test]
 fn strict_makes_warnings_errors() {
     let place = Workplace::new(FROZEN);

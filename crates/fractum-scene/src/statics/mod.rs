@@ -324,7 +324,11 @@ impl StaticSolver {
             self.lead.at = self.lead.at.or(opens);
             let leads = self.lead.at;
             warm_to(scene, scene.clock.time + longest)?;
-            let found = self.iterate(scene, &points, longest, growth, by_damage, monotone)?;
+            // A piece may come loose within the step, and not in a shorter one.
+            let (found, loose) = match self.iterate(scene, &points, longest, growth, by_damage, monotone) {
+                Err(error @ StepError::ComeApart { .. }) => (None, Some(error)),
+                found => (found?, None),
+            };
             if let Some((time, iterations)) = found
                 && !self.jumps(scene, &points, by_damage)
             {
@@ -377,7 +381,7 @@ impl StaticSolver {
                     continue;
                 }
                 warm_to(scene, scene.clock.time)?;
-                return Err(no_equilibrium(scene));
+                return Err(loose.unwrap_or_else(|| no_equilibrium(scene)));
             }
             monotone = smallest;
             self.pace.growth = (0.5 * self.pace.growth).max(GROWTH[1]);

@@ -15,7 +15,7 @@ use fractum_output::log::RunLog;
 use fractum_output::notes::{PICTURES, STRIP_FILE};
 use fractum_output::number::{at_instant, instant_text};
 use fractum_output::warning::{Code, Warning};
-use fractum_scene::{Scene, ranks, restore_periodic};
+use fractum_scene::{Scene, ranks, restore_periodic, restore_watch};
 
 use super::messages::Messages;
 use super::origin::{forget_case, keep_case, origin};
@@ -297,6 +297,7 @@ fn put_back(
     scene.restore_heat(state.heat);
     scene.restore_subcycling(state.subcycling);
     restore_periodic(scene, state.periodic);
+    restore_watch(scene, state.noticed);
     solver.restore(scene, state.solver);
     let mut record = state.record.into_owned();
     if is_other {
