@@ -94,11 +94,11 @@ pub use repeat::{
     BoxMeasure, into_periodic_box, measure_periodic_box, periodic_cell_of, periodic_state, restore_periodic,
     with_periodic_box,
 };
-pub use saved::SceneState;
+pub use saved::{SceneState, restore_watch, watch_of};
 pub use scene::{Scene, SceneSettings};
 pub use stage::{released_forces, with_excavation};
 pub use statics::{BondedStaticSettings, BondedStaticState, BondedStatics};
 pub use step::StepReport;
 pub use subcycling::SubcyclingState;
 pub use time_function::TimeFunction;
-pub use watch::{Notice, Noticed, Site, Watch, restore_watch, watch_of};
+pub use watch::{Notice, Noticed, Site, Watch};

@@ -16,6 +16,7 @@ use crate::ledger::{Books, Ledger};
 use crate::liquid::{Liquid, LiquidState};
 use crate::scene::{RemovalTally, Scene};
 use crate::stable_step::update_wall_frequency;
+use crate::watch::Watch;
 
 /// Everything that changes during a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,6 +116,16 @@ impl Scene {
         update_wall_frequency(self);
         state.conditions.put_back(&self.solid, &mut self.loads, &mut self.optional.surface_supports);
     }
+}
+
+/// What a scene has noticed so far, for a checkpoint: some of it may not have been told yet.
+pub fn watch_of(scene: &Scene) -> Watch {
+    scene.optional.watch
+}
+
+/// Puts back what a scene built from the same case had noticed.
+pub fn restore_watch(scene: &mut Scene, watch: Watch) {
+    scene.optional.watch = watch;
 }
 
 pub(crate) fn state_with(scene: &Scene, solid: SolidState) -> SceneState {

@@ -5,8 +5,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Scene;
-
 /// The kinds of what a scene notices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Notice {
@@ -87,14 +85,4 @@ pub struct Watch {
     pub(crate) first: [Option<Noticed>; Notice::COUNT],
     /// The largest overlap, whether it is worth a word or not.
     pub(crate) deepest: Option<Noticed>,
-}
-
-/// What a scene has noticed so far, for a checkpoint: some of it may not have been told yet.
-pub fn watch_of(scene: &Scene) -> Watch {
-    scene.optional.watch
-}
-
-/// Puts back what a scene built from the same case had noticed.
-pub fn restore_watch(scene: &mut Scene, watch: Watch) {
-    scene.optional.watch = watch;
 }
