@@ -61,7 +61,7 @@ mod particles;
 mod statics;
 
 pub use bond::*;
-pub use clumps::{CLUMP_SPHERES, ClumpMotion, ClumpShape, Clumps};
+pub use clumps::{CLUMP_SPHERES, ClumpMotion, ClumpShape, Clumps, NO_CLUMP};
 pub use error::DemError;
 pub use fractum_kernels::lanes;
 pub use fracture::{

@@ -383,10 +383,8 @@ fn a_cylinder_between_plates_has_the_modulus_of_its_material_and_starts_without_
     assert!((modulus / 30e9 - 1.0).abs() < 0.06 && start == [0.0; 2], "{modulus:e} {start:?}");
 }
 
-/// A plate meets a bonded body across a gap.
-fn plate_meets(shape: &str, gap: f64, speed: f64, seed: u32) -> String {
-    format!(
-        r#"fractum = 1
+/// A bonded body of gypsum, but for its shape.
+const GYPSUM: &str = r#"fractum = 1
 [materials.gypsum]
 density = "2000 kg/m^3"
 young_modulus = "5 GPa"
@@ -395,7 +393,12 @@ poisson_ratio = 0.2
 name = "body"
 kind = "bonded"
 material = "gypsum"
-{shape}
+"#;
+
+/// A plate meets a bonded body across a gap.
+fn plate_meets(shape: &str, gap: f64, speed: f64, seed: u32) -> String {
+    format!(
+        r#"{GYPSUM}{shape}
 particles = 150
 seed = {seed}
 [[bodies]]
@@ -418,16 +421,7 @@ reaction = {{ group = "upper", along = "z" }}
 }
 
 /// A block that falls on a cylinder beside the middle of its face.
-const FALLS_ON_ROLLER: &str = r#"fractum = 1
-[materials.gypsum]
-density = "2000 kg/m^3"
-young_modulus = "5 GPa"
-poisson_ratio = 0.2
-[[bodies]]
-name = "body"
-kind = "bonded"
-material = "gypsum"
-shape = "box"
+const FALLS_ON_ROLLER: &str = r#"shape = "box"
 size = ["10 mm", "10 mm", "10 mm"]
 particles = 150
 seed = SEED
@@ -457,7 +451,7 @@ energy = "kinetic"
 fn flat_faces_fall_on_a_roller() {
     for (seed, at, friction) in [("1", "5", "0"), ("2", "6", "0"), ("3", "2", "0.4")] {
         let case = [("SEED", seed), ("AT", at), ("FRICTION", friction)];
-        let case = case.iter().fold(FALLS_ON_ROLLER.to_string(), |text, (from, to)| text.replace(from, to));
+        let case = case.iter().fold(format!("{GYPSUM}{FALLS_ON_ROLLER}"), |text, (from, to)| text.replace(from, to));
         let place = Workplace::new(&case);
         let summary = run(&place, "one", "1");
         let residual = summary["energy"]["residual_max_relative"].as_f64().unwrap();

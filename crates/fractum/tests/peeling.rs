@@ -5,7 +5,7 @@ use std::path::Path;
 
 use fractum_mesh::MshFormat;
 
-use crate::common::{Workplace, mesh_bytes, run, summary};
+use crate::common::{Workplace, files_below, mesh_bytes, run, summary};
 use crate::heat::layers;
 
 /// Two layers that an interface joins, peeled off each other at one end.
@@ -71,6 +71,47 @@ fn supports_that_hold_nodes_of_both_sides_bring_no_energy() {
         let spent = energy("interface_fracture") + energy("interfaces");
         let cracked = summary["probes"]["cracked"]["final"].as_f64().unwrap();
         assert!(spent > 0.95 * 20.0 * cracked, "nu {nu}, {speed}, {safety}: {spent} J for {cracked} m2");
+    }
+}
+
+/// Two layers that are pulled off each other at rest. The upper one is held along y alone, and so by nothing once it has parted.
+const PARTED: &str = r#"[[supports]]
+where = "y < 0.01 mm"
+fix = "y"
+[[supports]]
+where = "x < 0.01 mm && y < 0.01 mm"
+fix = "x"
+[[supports]]
+where = "y > 3.99 mm"
+displacement = { y = "WAY um*t/1 s" }
+[solver]
+kind = "static"
+end = "1 s"
+[output]
+checkpoint = { steps = 1 }
+"#;
+
+#[test]
+fn a_path_goes_on_to_where_a_piece_comes_loose() {
+    // The face opens by 20 um, 2 G/f_t, until it bears nothing: at the end, before it, and long before it.
+    for (cells, way) in [([15, 2], 20.0), ([16, 4], 20.0), ([15, 2], 20.4), ([15, 2], 24.0), ([15, 2], 60.0)] {
+        let mesh = mesh_bytes(&layers(cells), MshFormat::V4_1Binary);
+        let head = &PEELED[..PEELED.find("[[supports]]").unwrap()];
+        let case = [head, PARTED].concat().replace("NU", "0.2").replace("WAY", &way.to_string());
+        let place = Workplace::with_mesh(&case, &mesh);
+        for threads in ["1", "2"] {
+            place.fractum(&["run", "case.toml", "-o", threads, "--threads", threads]);
+        }
+        let [one, two] = ["1", "2"].map(|folder| summary(&place, folder));
+        assert_eq!(one["state_hash"], two["state_hash"], "{cells:?} {way} um");
+        let spent = one["energy"]["interface_fracture"].as_f64().unwrap();
+        assert!(spent > 0.98 * 20.0 * 0.06 * 0.01, "{cells:?} {way} um: {spent} J, {}", one["time"]);
+        // From the state before the last.
+        let states = files_below(&place.path("2/checkpoint"), ".fck");
+        assert_eq!(states.len(), 2, "{cells:?} {way} um");
+        fs::remove_file(&states[1]).unwrap();
+        place.fractum(&["run", "case.toml", "-o", "2", "--threads", "1", "--resume"]);
+        assert_eq!(one["state_hash"], summary(&place, "2")["state_hash"], "{cells:?} {way} um, resumed");
     }
 }
 

@@ -92,28 +92,26 @@ fn turn(table: &Table<'_>, is_clump: bool) -> Option<Option<Rotation>> {
     Some(Some(rotation_by(axis? * angle?)))
 }
 
+/// Keys of a shape that is filled with particles.
+const OF_SHAPES: [&str; 11] = [
+    "shape",
+    "point",
+    "size",
+    "axis",
+    "length",
+    "radius",
+    "particles",
+    "dispersion",
+    "sizes",
+    "solid_fraction",
+    "inlet",
+];
+
 /// A particle at a given place.
 ///
 /// - `size`: radius of its clump as it is written [m]
 fn single(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
-    for key in [
-        "shape",
-        "point",
-        "size",
-        "axis",
-        "length",
-        "radius",
-        "particles",
-        "dispersion",
-        "sizes",
-        "solid_fraction",
-        "seed",
-        "inlet",
-        "unit",
-        "velocity_unit",
-        "frame",
-        "species",
-    ] {
+    for key in OF_SHAPES.into_iter().chain(["seed", "unit", "velocity_unit", "frame", "species"]) {
         table.refuse(key, "beside centre, at which a single particle is");
     }
     let centre = point(table, "centre").required();
@@ -133,21 +131,7 @@ fn radius(table: &Table<'_>, size: Option<f64>) -> Option<f64> {
 }
 
 fn from_file(table: &Table<'_>, is_clump: bool) -> Option<LooseSource> {
-    for key in [
-        "shape",
-        "point",
-        "size",
-        "axis",
-        "length",
-        "radius",
-        "particles",
-        "particle_radius",
-        "dispersion",
-        "sizes",
-        "solid_fraction",
-        "inlet",
-        "centre",
-    ] {
+    for key in OF_SHAPES.into_iter().chain(["particle_radius", "centre"]) {
         table.refuse(key, "beside a file of particles");
     }
     if !is_clump || table.has("orientation") {

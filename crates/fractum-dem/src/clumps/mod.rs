@@ -3,6 +3,7 @@
 mod motion;
 mod shape;
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use fractum_math::{HalfSteps, Mat3, Rotation, Vec3, sphere_volume};
@@ -11,6 +12,9 @@ use serde::{Deserialize, Serialize};
 pub use shape::{CLUMP_SPHERES, ClumpShape};
 
 use crate::{DemError, Particles};
+
+/// Clump of a particle that belongs to none.
+pub const NO_CLUMP: u32 = u32::MAX;
 
 /// What changes in clumps during a run; one entry per clump.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -148,12 +152,12 @@ impl Clumps {
         self.runs.iter().flat_map(|(run, _)| run.clone())
     }
 
-    /// The clump of each of so many particles; `u32::MAX` for those of none. Nothing where there is no clump.
+    /// The clump of each of so many particles; [`NO_CLUMP`] for those of none. Nothing where there is no clump.
     pub fn of_particles(&self, count: usize) -> Vec<u32> {
         if self.is_empty() {
             return Vec::new();
         }
-        let mut of = vec![u32::MAX; count];
+        let mut of = vec![NO_CLUMP; count];
         for (run, start) in &self.runs {
             of[run.clone()].copy_from_slice(&self.owner[*start..*start + run.len()]);
         }
@@ -161,7 +165,10 @@ impl Clumps {
     }
 
     /// Mass of every particle [kg]; of a sphere of a clump its share by volumes of spheres, so that all of them add up.
-    pub fn masses(&self, particles: &Particles) -> Vec<f64> {
+    pub fn masses<'p>(&self, particles: &'p Particles) -> Cow<'p, [f64]> {
+        if self.is_empty() {
+            return Cow::Borrowed(&particles.mass);
+        }
         let mut masses = particles.mass.clone();
         for clump in 0..self.len() {
             let own = self.particles_of(clump);
@@ -169,7 +176,7 @@ impl Clumps {
             let cubes: f64 = own.clone().map(cube).sum();
             own.for_each(|i| masses[i] = self.mass[clump] * cube(i) / cubes);
         }
-        masses
+        Cow::Owned(masses)
     }
 
     /// Mass of a clump [kg].

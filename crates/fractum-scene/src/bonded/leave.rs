@@ -1,6 +1,6 @@
 //! Bonded and loose particles that leave the run.
 
-use fractum_dem::Particles;
+use fractum_dem::{NO_CLUMP, Particles};
 use fractum_math::{Vec3, connected};
 
 use super::Bonded;
@@ -33,7 +33,7 @@ impl Bonded {
         touching.iter().for_each(|&i| stays[piece[i as usize] as usize] = true);
         for i in 0..all.len() {
             // Clumps hold their spheres, and nothing holds clumps; what is out has left.
-            let held = all.held[i] != 0 && (all.is_out(i) || clump_of.get(i).is_none_or(|clump| *clump == u32::MAX));
+            let held = all.held[i] != 0 && (all.is_out(i) || clump_of.get(i).is_none_or(|clump| *clump == NO_CLUMP));
             let bound = held || !domain.is_ball_outside(&all.position[i], all.radius[i]);
             stays[piece[i] as usize] |= bound;
         }
@@ -49,7 +49,7 @@ impl Bonded {
         for &i in &leaves {
             let particle = i as usize;
             left.pieces += usize::from(piece[particle] == i);
-            if let Some(&clump) = clump_of.get(particle).filter(|clump| **clump != u32::MAX) {
+            if let Some(&clump) = clump_of.get(particle).filter(|clump| **clump != NO_CLUMP) {
                 // With the first of its spheres it leaves as a whole.
                 if piece[particle] == i {
                     let clump = clump as usize;

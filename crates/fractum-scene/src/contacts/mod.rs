@@ -18,7 +18,7 @@ mod solid_surface;
 
 use fractum_contact::law::{ContactParameters, ElasticMaterial, Hertz, HertzMemory, MaterialPair};
 use fractum_contact::{PeriodicCell, SphereContacts, Spheres, Surface, SurfaceContacts, Touch};
-use fractum_dem::{ParticleSubdomain, Particles};
+use fractum_dem::{NO_CLUMP, ParticleSubdomain, Particles};
 use fractum_fem::Solid;
 use fractum_math::{HalfSteps, Mat3, Vec3, Work};
 use serde::{Deserialize, Serialize};
@@ -52,9 +52,6 @@ const RAYLEIGH_SHARE: f64 = 0.25;
 /// The same of loose ones, whose impacts last 1.5 to 6 such times (Hertz; at a tenth to a ten-thousandth of the speed of waves) and want some fifty
 /// steps for the energy balance: its error falls with the square of the step.
 const LOOSE_SHARE: f64 = 0.0625;
-
-/// Clump of a particle that belongs to none.
-const NO_CLUMP: u32 = u32::MAX;
 
 /// How the particles of a body touch others.
 #[derive(Clone, Copy, Debug, PartialEq)]

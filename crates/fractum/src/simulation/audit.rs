@@ -369,19 +369,19 @@ fn undefined_probes(case: &Case, recorder: &Recorder) -> Vec<Warning> {
     };
     let told = |probe: &Probe| {
         let name = &probe.name.value;
-        let (text, remedy) = match (&probe.kind, summaries[name].max.is_nan()) {
-            (ProbeKind::Expression(_), true) => (
-                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants",
-                "look at the values that its expression takes (history.csv)",
-            ),
-            (ProbeKind::Expression(_), false) => (
-                "it is infinite at an instant: something is divided by zero",
-                "look at the values that its expression takes (history.csv)",
-            ),
-            _ => (
-                "it had no value at any instant: what it looks at was never there, such as a crack of enough bonds",
-                "look at what the run came to (pictures, counts in summary.json)",
-            ),
+        let is_expression = matches!(probe.kind, ProbeKind::Expression(_));
+        let text = match (is_expression, summaries[name].max.is_nan()) {
+            (false, _) => {
+                "it had no value at any instant: what it looks at was never there, such as a crack of enough bonds"
+            }
+            (true, true) => {
+                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants"
+            }
+            (true, false) => "it is infinite at an instant: something is divided by zero",
+        };
+        let remedy = match is_expression {
+            true => "look at the values that its expression takes (history.csv)",
+            false => "look at what the run came to (pictures, counts in summary.json)",
         };
         Warning::new(Code::Undefined, format!("probe \"{name}\""), text).remedy(remedy)
     };
