@@ -263,8 +263,8 @@ impl Simulation {
             }
         }
         if !self.is_over() && self.solver.follows_path() {
-            let Simulation { recorder, scene, phases, .. } = self;
-            phases.timed(Part::Output, || recorder.follow(scene))?;
+            let Simulation { recorder, scene, phases, case, .. } = self;
+            phases.timed(Part::Output, || recorder.follow(scene, case.output.fields_every_at_rest))?;
         }
         self.messages.tell_event()?;
         self.recorder.check_frame()?;

@@ -7,6 +7,7 @@ use crate::common::{Workplace, checkpoints, history, mesh_bytes, run, signal, su
 use fractum_math::Vec3;
 use fractum_mesh::MshFormat;
 use fractum_mesh::generate::structured_box;
+use fractum_output::frames::read_collection;
 
 /// A bar of 0.4 m without lateral strain, pulled at rest by 10 um and let go.
 const RELEASED: &str = r#"fractum = 1
@@ -88,21 +89,26 @@ fn a_bar_released_from_rest_swings_with_its_own_period_and_keeps_its_energy() {
     assert_eq!(one["state_hash"], run(&place, "two", "2")["state_hash"]);
 }
 
-/// A short motion after a long rest: it has the rows of a run of its own, and damping is judged in its own second half.
+/// A short motion after a long rest: it has the rows and frames of a run of its own, and damping is judged in its own second half.
 #[test]
-fn a_short_motion_after_a_long_rest_has_rows_of_its_own() {
+fn a_short_motion_after_a_long_rest_has_rows_and_frames_of_its_own() {
     let mesh = structured_box([8, 2, 2], Vec3::new(0.4, 0.12, 0.12), None);
     let case = RELEASED
         .replace("10 um*t/1 ms", "10 um*t/1 s")
         .replace("end = \"1 ms\"", "end = \"1 s\"")
         .replace("end = \"1.3 ms\"", "end = \"1.004 s\"\n[damping]\nmass = \"8000 1/s\"")
         .replace("history = { every = \"2 us\" }\n", "")
+        .replace("fields = { every = \"0.1 ms\" }\n", "")
         .replace("checkpoint = { every = \"1 ms\" }\n", "");
     let place = Workplace::with_mesh(&case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
     run(&place, "one", "1");
     let rows = history(&place, "one", &["in_motion", "kinetic", "tip"]);
     let moving: Vec<_> = rows.iter().filter(|row| row[0] == 1.0).collect();
     assert!(moving.len() > 900, "{} rows in motion", moving.len());
+    let frames = read_collection(&place.path("one/fields.pvd")).unwrap().entries;
+    let [at_rest, moving_frames] =
+        [false, true].map(|moves| frames.iter().filter(|at| (at.time > 1.0) == moves).count());
+    assert!(at_rest <= 51 && (48..=52).contains(&moving_frames), "{at_rest} frames at rest, {moving_frames} in motion");
     assert!(moving.last().unwrap()[2].abs() < 1e-8, "it has come to rest: {:?}", moving.last());
     assert_eq!(
         summary(&place, "one")["warnings"].as_array().unwrap().len(),

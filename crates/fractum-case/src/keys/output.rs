@@ -10,7 +10,7 @@ use crate::unit::Dimension as D;
 pub(super) static FIRST: &[KeyDoc] = &[
     key("output", K::Table, "", "Results: what is written, and how often"),
     key("output.fields", K::Table, "", "Fields for ParaView"),
-    key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between frames, > 0. A static run writes a frame each time the load factor has changed by it, up or down, and further ones as damage grows"),
+    key("output.fields.every", K::Quantity(D::TIME), "1/50 of the run", "Time between frames, > 0. With several stages the default is 1/50 of those in motion, and of each at rest. A static run writes a frame each time the load factor has changed by it, up or down, and further ones as damage grows"),
 ];
 
 /// After them.

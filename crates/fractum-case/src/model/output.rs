@@ -9,8 +9,12 @@ use super::{Gauges, Plot, Ppv};
 pub struct Output {
     /// What frames hold besides what they always do.
     pub fields: OutputFields,
-    /// Time between fields [s].
+    /// Time between frames in motion [s].
     pub fields_every: f64,
+    /// Change of the load factor between frames of this stage, if it is at rest [s].
+    pub fields_every_at_rest: f64,
+    /// Whether the case gives the time between frames.
+    pub gives_fields: bool,
     /// Files that solids and particles of a frame are cut into, from 1.
     pub frame_pieces: usize,
     /// Time between rows of the history [s].

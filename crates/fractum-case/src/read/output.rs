@@ -7,8 +7,8 @@ use crate::Diagnostic;
 use crate::model::{Output, Plot};
 use crate::reader::Table;
 
-/// Frames of fields where nothing is said.
-const FRAMES: f64 = 50.0;
+/// Frames of fields where nothing is said; where a run has several stages, of those in motion, and of each at rest.
+pub(super) const FRAMES: f64 = 50.0;
 /// Rows of the history where nothing is said; of its stages in motion where a run has several.
 pub(super) const ROWS: f64 = 1000.0;
 /// Most files that a frame may be cut into.
@@ -72,6 +72,8 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
     Some(Output {
         fields: further,
         fields_every: fields.unwrap_or(end / FRAMES),
+        fields_every_at_rest: fields.unwrap_or(end / FRAMES),
+        gives_fields: fields.is_some(),
         frame_pieces: pieces as usize,
         history_every: history.unwrap_or(end / ROWS),
         gives_history: history.is_some(),

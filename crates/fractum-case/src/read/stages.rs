@@ -2,7 +2,7 @@
 
 use super::super::tree::{Entry, Node, Value};
 use super::excavation;
-use super::output::ROWS;
+use super::output::{FRAMES, ROWS};
 use crate::model::{Body, BodyKind, Case, SolverKind};
 use crate::reader::{Reader, Table};
 use crate::{Diagnostic, Spanned};
@@ -142,11 +142,21 @@ pub(super) fn joined(reader: &Reader, cases: Vec<Option<Case>>) -> Option<Case> 
     let mut output = cases.last()?.output.clone();
     let moving = cases.iter().filter(|case| case.solver.kind == SolverKind::Explicit);
     let in_motion: f64 = moving.map(|case| case.solver.end - case.solver.begin).sum();
-    if cases.len() > 1 && !output.gives_history && in_motion > 0.0 {
+    let has_stages = cases.len() > 1;
+    if has_stages && !output.gives_history && in_motion > 0.0 {
         // Every state at rest is a row anyway.
         output.history_every = in_motion / ROWS;
     }
-    cases.iter_mut().for_each(|case| case.output = output.clone());
+    let counts_frames = has_stages && !output.gives_fields;
+    if counts_frames && in_motion > 0.0 {
+        output.fields_every = in_motion / FRAMES;
+    }
+    for case in &mut cases {
+        case.output = output.clone();
+        if counts_frames {
+            case.output.fields_every_at_rest = (case.solver.end - case.solver.begin) / FRAMES;
+        }
+    }
     let later = cases.split_off(1);
     Some(Case { later, ..cases.pop()? })
 }

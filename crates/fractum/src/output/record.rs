@@ -354,10 +354,12 @@ impl Recorder {
     }
 
     /// Follows a run at rest after a step: how far it has come, and whether its load is the largest so far.
-    pub(crate) fn follow(&mut self, scene: &Scene) -> Result<(), Failure> {
+    ///
+    /// - `every`: change of the load factor between frames [s]
+    pub(crate) fn follow(&mut self, scene: &Scene, every: f64) -> Result<(), Failure> {
         let ledger = scene.ledger();
         let [elastic, spent] = [ledger[EnergyKind::Elastic], ledger.spent()];
-        self.state.path.advance(scene.clock.time, spent, elastic, self.case.output.fields_every);
+        self.state.path.advance(scene.clock.time, spent, elastic, every);
         let load = self.load().map_or(Some(elastic), |(load, _)| self.state.series[load].last().copied());
         if self.state.path.is_peak(load.unwrap_or(0.0).abs()) && !self.state.path.frame_is_due() {
             let frame = self.frame_of(scene)?;

@@ -184,7 +184,8 @@ impl Stage<'_> {
     /// Numbers of frames and of rows of the history; of a path of equilibria, which has a row for every step, those that its steps ask for.
     fn counts(&self, built: &BuiltScene) -> [f64; 2] {
         let output = &self.case.output;
-        let [frames, rows] = [output.fields_every, output.history_every].map(|every| (self.span / every).ceil() + 1.0);
+        let fields = if built.statics.is_some() { output.fields_every_at_rest } else { output.fields_every };
+        let [frames, rows] = [fields, output.history_every].map(|every| (self.span / every).ceil() + 1.0);
         match &built.statics {
             Some(settings) if matches!(settings.control, Control::Time | Control::TimeThenPath) => {
                 let steps = (self.span / settings.step).ceil() + 1.0;

@@ -102,10 +102,10 @@ impl Simulation {
         ranks.share(scene).into_iter().try_for_each(|share| messages.log.line(share))?;
         if goes_on.is_none() && !simulation.solver.moves() && !simulation.solver.shows_modes() {
             // A path begins where nothing acts.
-            let Simulation { recorder, scene, solver, .. } = &mut simulation;
+            let Simulation { recorder, scene, solver, case, .. } = &mut simulation;
             recorder.row(scene, Measured { time: 0.0, dt: 0.0, in_motion: false }, false)?;
             if solver.follows_path() {
-                recorder.follow(scene)?;
+                recorder.follow(scene, case.output.fields_every_at_rest)?;
             }
         }
         // What had ended by its curve stays ended.
