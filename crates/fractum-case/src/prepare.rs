@@ -86,7 +86,7 @@ fn bonded_request<'a>(
         PackingSource::Particles { file, unit, frame, species, shape, bond_gap } => PackingRequest::Particles {
             file: ParticleFile {
                 bytes: &file.bytes,
-                unit: *unit,
+                unit: unit.length,
                 velocity_unit: None,
                 frame: *frame,
                 species: species.as_deref(),
@@ -146,7 +146,7 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
     let source = match &loose.source {
         LooseSource::File { file, unit, velocity_unit, frame, species } => LooseFill::File(ParticleFile {
             bytes: &file.bytes,
-            unit: *unit,
+            unit: unit.length,
             velocity_unit: *velocity_unit,
             frame: *frame,
             species: species.as_deref(),

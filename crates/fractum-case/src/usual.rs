@@ -77,6 +77,15 @@ pub(super) const HEAT_CAPACITY: Usual = Usual {
     units: &[("J/(kg K)", 1.0), ("kJ/(kg K)", 1e3)],
 };
 
+/// Linear thermal expansion [1/K].
+pub(super) const EXPANSION: Usual = Usual {
+    unit: "1/K",
+    range: (-1e-4, 1e-3),
+    words: "-1e-4 to 1e-3 1/K (glass has 9e-6, rock 8e-6, steel 12e-6, rubber 2e-4 1/K)",
+    common: (1e-7, 3e-4),
+    units: &[],
+};
+
 /// Velocity of detonation [m/s].
 pub(super) const DETONATION: Usual = Usual {
     unit: "m/s",
@@ -173,7 +182,7 @@ fn number_of(node: &Node) -> Option<f64> {
     };
     let end = text.find(char::is_whitespace).unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
-    let plain = unit.chars().all(|c| c.is_alphanumeric() || " /^µ-".contains(c));
+    let plain = unit.chars().all(|c| c.is_alphanumeric() || " /^µ-()".contains(c));
     number.parse().ok().filter(|_| plain)
 }
 
@@ -195,6 +204,8 @@ mod tests {
         assert_eq!(meant(&STRENGTH, "8 Pa", 8.0), named("8 MPa"));
         assert_eq!(meant(&DENSITY, "2.65 kg/m^3", 2.65), named("2.65 g/cm^3"));
         assert_eq!(meant(&DENSITY, "2.4e-9", 2.4e-9), named("2.4e-9 t/mm^3"));
+        assert_eq!(meant(&HEAT_CAPACITY, "0.8 J/(kg K)", 0.8), named("0.8 kJ/(kg K)"));
+        assert!(meant(&EXPANSION, "12e-3 1/K", 12e-3).is_some() && meant(&EXPANSION, "-2e-6 1/K", -2e-6).is_none());
         assert_eq!(meant(&YOUNG_MODULUS, "2*E", 50.0), named("50 GPa"));
         assert_eq!(meant(&YOUNG_MODULUS, "21 GPa", 21e9), None);
     }

@@ -63,7 +63,7 @@ fn place(file: &str, more: &str, content: &str) -> Workplace {
 
 #[test]
 fn beads_in_millimetres_that_are_read_in_metres_are_told() {
-    for (unit, told) in [("unit = \"mm\"\n", false), ("", true)] {
+    for (unit, told) in [("unit = \"mm\"\n", false), ("", true), ("unit = \"m\"\n", false)] {
         let place = Workplace::new(&BEADS.replace("FILE", "beads.csv").replace("unit = \"mm\"\nMORE\n", unit));
         fs::write(place.path("beads.csv"), "x,y,z,radius\n1,1,1,1\n4,1,1,1\n").unwrap();
         let ended = place.fractum(&["check", "case.toml"]);

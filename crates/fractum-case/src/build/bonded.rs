@@ -14,7 +14,9 @@ use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
 use super::precheck::check_field;
-use crate::model::{BodyKind, BondedBody, Case, LooseBody, LooseSource, Material, PackingSource, Selection, TimeStep};
+use crate::model::{
+    BodyKind, BondedBody, Case, FileUnit, LooseBody, LooseSource, Material, PackingSource, Selection, TimeStep,
+};
 use crate::{Diagnostic, Field, Spanned};
 
 /// Mean radius of the particles of a file from which on it is probably in millimetres [m].
@@ -223,11 +225,11 @@ pub(super) fn doubts_of_size(case: &Case, prepared: &[PreparedBody]) -> Vec<Diag
         _ => None,
     };
     let files = case.bodies.iter().filter_map(|body| file(&body.kind));
-    let doubt = |(file, made): (Option<(Spanned<String>, f64)>, &PreparedBody)| {
+    let doubt = |(file, made): (Option<(Spanned<String>, FileUnit)>, &PreparedBody)| {
         let (name, unit) = file?;
         let radii = &made.particles.radius;
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
-        if unit != 1.0 || mean < LARGE_RADIUS {
+        if unit.is_named || unit.length != 1.0 || mean < LARGE_RADIUS {
             return None;
         }
         let found = format!("= \"{}\": its particles have a mean radius of {}", name.value, quantity(mean, "m"));

@@ -90,13 +90,13 @@ fn doubt_of_unit(case: &Case, size: f64) -> Option<Diagnostic> {
     let source = case.mesh.as_ref()?;
     let found = format!("= \"{}\": its solids are {} large", source.file.value.display(), quantity(size, "m"));
     let note = Diagnostic::warning(Code::UnitOfLength, &source.file.place, found);
-    if source.unit == 1.0 && size > LARGE && !is_of_the_field(case) {
+    if !source.unit.is_named && source.unit.length == 1.0 && size > LARGE && !is_of_the_field(case) {
         let note = note.expected("coordinates in metres, the unit where mesh.unit names no other");
         return Some(note.remedy("if they are in millimetres, set mesh.unit = \"mm\""));
     }
-    if source.unit < 1.0 && size > 0.0 && size < SMALL {
+    if source.unit.length < 1.0 && size > 0.0 && size < SMALL {
         let mut unit = String::new();
-        push_shortest(&mut unit, source.unit);
+        push_shortest(&mut unit, source.unit.length);
         let note = note.expected(format!("coordinates in the unit of mesh.unit, which is {unit} m"));
         return Some(note.remedy("if they are in metres, leave mesh.unit out"));
     }

@@ -6,7 +6,7 @@ use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention, Domain};
 use fractum_prepare::{BondLawKind, BondStrength, Micro, ParticleSize};
 
-use super::Scatter;
+use super::{FileUnit, Scatter};
 use crate::choice::choice;
 use crate::{Field, Spanned};
 
@@ -60,8 +60,8 @@ pub enum PackingSource {
     Particles {
         /// The file.
         file: FileContent,
-        /// Length of its unit [m].
-        unit: f64,
+        /// Unit of its lengths.
+        unit: FileUnit,
         /// Its frame, from 0 on; `None` = the last one.
         frame: Option<u64>,
         /// Type of the particles that are taken; `None` = all.

@@ -4,7 +4,7 @@ use fractum_math::Vec3;
 use fractum_pack::Grading;
 use fractum_prepare::{Amount, Clump, Region, Stream};
 
-use super::FileContent;
+use super::{FileContent, FileUnit};
 use crate::{Field, Place, Spanned};
 
 /// Loose particles of one material.
@@ -36,8 +36,8 @@ pub enum LooseSource {
     File {
         /// The file.
         file: FileContent,
-        /// Length of its unit [m].
-        unit: f64,
+        /// Unit of its lengths.
+        unit: FileUnit,
         /// Its unit of velocity [m/s]; `None` = velocities are not taken.
         velocity_unit: Option<f64>,
         /// Its frame, from 0 on; `None` = the last one.

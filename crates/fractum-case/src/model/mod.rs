@@ -141,6 +141,15 @@ pub struct CaseSource {
 /// Group that is all of the mesh, for a body without a `group`.
 pub const WHOLE_MESH: &str = "whole mesh";
 
+/// Unit of the lengths in a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FileUnit {
+    /// Its length [m].
+    pub length: f64,
+    /// Whether the case names it: then nobody forgot it.
+    pub is_named: bool,
+}
+
 /// Where the mesh comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshSource {
@@ -148,8 +157,8 @@ pub struct MeshSource {
     pub file: Spanned<PathBuf>,
     /// Number of files that hold a part of the mesh each, see [`MeshSource::files`]; none where one holds it whole.
     pub parts: Option<usize>,
-    /// Length of the mesh's unit [m].
-    pub unit: f64,
+    /// Unit of its coordinates.
+    pub unit: FileUnit,
     /// Whether a body is all of it: it then has the group [`WHOLE_MESH`].
     pub is_one_body: bool,
     /// Solids whose coincident nodes become one, before anything else is done with the mesh.

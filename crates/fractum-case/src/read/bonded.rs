@@ -5,7 +5,7 @@ use fractum_math::Vec3;
 use fractum_pack::{Arrangement, Convention};
 use fractum_prepare::Micro;
 
-use super::{read_file, table_path, unit};
+use super::{file_unit, metres, read_file, table_path, unit};
 use crate::model::{BondLawKind, BondedBody, BondedShape, Bonds, FileContent, Material, PackingSource, ParticleSize};
 use crate::reader::Table;
 use crate::reader::presence::optional;
@@ -222,7 +222,7 @@ fn particles(table: &Table<'_>) -> Option<PackingSource> {
         }
     };
     let file = file(table, "file");
-    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    let unit = optional(table, "unit", |_| file_unit(table));
     let frame = optional(table, "frame", |name| frame(table, name));
     let species = optional(table, "species", |name| table.text(name).given());
     let bond_gap = optional(table, "bond_gap", |name| table.quantity(name).positive().given());
@@ -231,7 +231,7 @@ fn particles(table: &Table<'_>) -> Option<PackingSource> {
     }
     Some(PackingSource::Particles {
         file: file?,
-        unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)),
+        unit: unit?.unwrap_or_else(|| metres(table.reader)),
         frame: frame?,
         species: species?,
         shape: shape?,

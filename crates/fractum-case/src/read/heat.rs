@@ -10,7 +10,7 @@ use crate::reader::Table;
 use crate::reader::presence::{exactly_one, optional};
 use crate::reader::vectors::field;
 use crate::selection::selection;
-use crate::usual::HEAT_CAPACITY;
+use crate::usual::{EXPANSION, HEAT_CAPACITY};
 use crate::{Diagnostic, Spanned};
 
 /// Reads what a material is to heat; `Some(None)` where it says nothing.
@@ -20,7 +20,8 @@ pub(super) fn thermal(material: &Table<'_>) -> Option<Option<Spanned<Thermal>>> 
     let conductivity = table.quantity("conductivity").physical().required();
     let heat_capacity = table.quantity("heat_capacity").physical().usual(&HEAT_CAPACITY).required();
     let least = |value: &f64| value.abs() < 1.0;
-    let expansion = table.quantity("expansion").check(least, "a strain per kelvin, such as \"1e-5 1/K\"");
+    let expansion =
+        table.quantity("expansion").check(least, "a strain per kelvin, such as \"1e-5 1/K\"").usual(&EXPANSION);
     let expansion = expansion.or_if_absent(0.0);
     table.finish("here");
     let thermal = Thermal { conductivity: conductivity?, heat_capacity: heat_capacity?, expansion: expansion? };

@@ -4,7 +4,7 @@ use fractum_dem::ClumpShape;
 use fractum_math::{Rotation, Vec3, rotation_by};
 
 use super::bonded::{DISPERSION_RANGE, file, frame, groups};
-use super::{inlet, sizes, unit};
+use super::{file_unit, inlet, metres, sizes};
 use crate::model::{Amount, Clump, LooseBody, LooseSource, Region, Sizes, Turn};
 use crate::reader::Table;
 use crate::reader::presence::optional;
@@ -137,7 +137,7 @@ fn from_file(table: &Table<'_>, is_clump: bool) -> Option<LooseSource> {
     if !is_clump || table.has("orientation") {
         table.refuse("seed", "beside a file of particles");
     }
-    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    let unit = optional(table, "unit", |_| file_unit(table));
     let file = file(table, "file");
     let velocity_unit = optional(table, "velocity_unit", |name| super::unit(table, name, Dimension::VELOCITY));
     if table.has("velocity_unit") {
@@ -147,7 +147,7 @@ fn from_file(table: &Table<'_>, is_clump: bool) -> Option<LooseSource> {
     let species = optional(table, "species", |name| table.text(name).given());
     Some(LooseSource::File {
         file: file?,
-        unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)),
+        unit: unit?.unwrap_or_else(|| metres(table.reader)),
         velocity_unit: velocity_unit?,
         frame: frame?,
         species: species?,

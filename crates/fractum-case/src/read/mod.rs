@@ -50,8 +50,8 @@ use std::path::Path;
 use super::expression::parse_unit;
 use super::keys::{describe, remove_unknown};
 use super::model::{
-    Body, BodyKind, BondedShape, Case, CaseSource, Flows, MeshSource, PackingSource, RigidShape, SolidGroup, Verify,
-    WHOLE_MESH,
+    Body, BodyKind, BondedShape, Case, CaseSource, FileUnit, Flows, MeshSource, PackingSource, RigidShape, SolidGroup,
+    Verify, WHOLE_MESH,
 };
 use super::reader::{Reader, Table};
 use super::scale::Scale;
@@ -290,7 +290,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
     }
     let table = root.table_or_empty("mesh");
     let file = table.text("file").spanned().required();
-    let unit = unit(&table, "unit", Dimension::LENGTH).unwrap_or(root.reader.scale.of(Dimension::LENGTH));
+    let unit = file_unit(&table).unwrap_or_else(|| metres(root.reader));
     let halvings = table.integer("halvings").check(|count| *count <= 6, "0 to 6").or(0) as u32;
     let scramble = table.table("scramble").map(|table| {
         let share = table.quantity("share").check(|share| *share > 0.0 && *share <= 0.5, "above 0 and at most 0.5");
@@ -303,7 +303,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
         .has("parts")
         .then(|| table.integer("parts").check(|count| (1..=MOST_PARTS).contains(count), "1 to 65536").or(1) as usize);
     let refine = refine::read(&table);
-    let network = network::read(&table, unit);
+    let network = network::read(&table, unit.length);
     table.finish("here");
     let Spanned { value, place } = file?;
     let file = Spanned::new(table_path(root.reader, &value), place);
@@ -377,6 +377,16 @@ fn unit(table: &Table<'_>, name: &'static str, dimension: Dimension) -> Option<f
         Some(unit.size() * table.reader.scale.of(dimension))
     });
     read.given()
+}
+
+/// The unit of lengths that a body or the mesh names for its file; `None` where absent or wrong.
+fn file_unit(table: &Table<'_>) -> Option<FileUnit> {
+    unit(table, "unit", Dimension::LENGTH).map(|length| FileUnit { length, is_named: true })
+}
+
+/// What lengths in files are where nothing is said.
+fn metres(reader: &Reader) -> FileUnit {
+    FileUnit { length: reader.scale.of(Dimension::LENGTH), is_named: false }
 }
 
 /// Refuses what may never end: devices and pipes.

@@ -43,7 +43,7 @@ fn no_case_of_the_gallery_and_no_template_is_doubted() {
         let mesh = meshes.entry(file).or_insert_with_key(|file| {
             // Meshes too large for the repository are made by a command, and are empty here.
             let mut mesh = fs::read(file).map_or_else(|_| Mesh::default(), |bytes| read_msh(&bytes).unwrap());
-            let unit = case.mesh.as_ref().map_or(1.0, |source| source.unit);
+            let unit = case.mesh.as_ref().map_or(1.0, |source| source.unit.length);
             mesh.nodes.iter_mut().for_each(|node| *node *= unit);
             mesh
         });

@@ -150,8 +150,8 @@ fn documented_defaults_are_the_defaults() {
         let plain = |case: &Case| {
             let mut case = case.clone();
             case.source.overrides.clear();
-            // Places, and the hash of what is written, differ between what is written and what is not.
-            let text = format!("{case:?}");
+            // Places, the hash of what is written, and whether a unit is named differ between what is written and what is not.
+            let text = format!("{case:?}").replace("is_named: true", "is_named: false");
             let (before, after) = text.split_once("hash_but_end: ").expect("the hash of the source");
             let text = before.to_owned() + after.trim_start_matches(|c: char| c.is_ascii_digit());
             text.split("place: Place").map(|part| part.split_once('}').map_or(part, |p| p.1)).collect::<String>()

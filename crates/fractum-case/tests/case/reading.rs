@@ -22,7 +22,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(case.source.title, "Every key");
     let mesh = case.mesh.as_ref().unwrap();
     assert_eq!(mesh.file.value, folder().join("meshes/block.msh"));
-    assert_eq!(mesh.unit, 1e-3);
+    assert_eq!(mesh.unit.length, 1e-3);
     assert_eq!(mesh.files(), ["meshes/block_1.msh", "meshes/block_2.msh"].map(|file| folder().join(file)));
     assert_eq!(case.source.parameters["E1"], (42e9, "Pa".to_owned()));
 
@@ -238,7 +238,7 @@ source = "none"
     let (one, two) = (good(&text, &[]), good(&text, &[("verify.scale", "2.0")]));
     let of = |case: &fractum_case::Case| (case.materials[0].density, case.materials[0].contact_modulus);
     assert_eq!(of(&one), of(&two));
-    assert_eq!((two.solver.end, two.mesh.as_ref().unwrap().unit), (2e-3, 2.0));
+    assert_eq!((two.solver.end, two.mesh.as_ref().unwrap().unit.length), (2e-3, 2.0));
     let moved = |case: &fractum_case::Case, axis: usize, t: f64, x: f64| match &case.supports[0].motion[axis] {
         Some(Spanned { value: Motion::Displacement(function), .. }) => function.value(t, Vec3::new(x, 0.0, 0.0)),
         other => panic!("{other:?}"),

@@ -41,7 +41,7 @@ impl Demand {
             Some(Zone { material: name, length: material.process_zone()?, most })
         };
         Demand {
-            unit: case.mesh.as_ref().map_or(1.0, |mesh| mesh.unit),
+            unit: case.mesh.as_ref().map_or(1.0, |mesh| mesh.unit.length),
             zones: case.materials.iter().filter_map(zone).collect(),
         }
     }

@@ -164,8 +164,8 @@ fn read_files(source: &MeshSource, processes: Processes) -> Result<ReadFiles, Fa
         Some(_) => joined(&meshes).map_err(|error| misfit(source, &error))?,
         None => meshes.pop().unwrap_or_default(),
     };
-    if source.unit != 1.0 {
-        mesh.nodes.iter_mut().for_each(|node| *node *= source.unit);
+    if source.unit.length != 1.0 {
+        mesh.nodes.iter_mut().for_each(|node| *node *= source.unit.length);
     }
     let mut warnings = source.join.as_ref().map_or_else(Vec::new, |join| join_solids(&mut mesh, join));
     if let Some((share, seed)) = source.scramble {
