@@ -475,3 +475,43 @@ fn flat_faces_meet_a_plate_across_a_gap() {
         assert!(residual < 1e-3 && momentum > 0.0, "{shape} {gap} {speed} {seed}: {residual}, {momentum}");
     }
 }
+
+/// A rod that hangs from a support, which goes down with it.
+const HANGS: &str = r#"fractum = 1
+[materials.rock]
+density = "2500 kg/m^3"
+young_modulus = "50 MPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "rod"
+kind = "bonded"
+material = "rock"
+shape = "box"
+size = ["0.3 m", "0.1 m", "0.1 m"]
+particles = 500
+[[supports]]
+group = "rod.x-"
+displacement = { x = "DOWN*t/1 s", y = "0 m", z = "0 m" }
+[[loads]]
+gravity = { x = "9.81 m/s^2" }
+[solver]
+kind = "static"
+end = "1 s"
+[[probes]]
+name = "hold"
+reaction = { group = "rod.x-", along = "-x" }
+"#;
+
+/// A support at rest bears what loads the particles that it holds, as it does in motion, and no work is counted twice where it moves.
+#[test]
+fn a_support_at_rest_bears_the_weight_of_what_it_holds() {
+    for down in ["0 m", "1 mm"] {
+        let place = Workplace::new(&HANGS.replace("DOWN", down));
+        let summary = run(&place, "out", "1");
+        // The packing is larger than its box by 6e-5.
+        let weight = 2500.0 * 0.3 * 0.1 * 0.1 * 9.81;
+        let [hold, balance] = [&summary["probes"]["hold"]["final"], &summary["energy"]["residual_max_relative"]]
+            .map(|value| value.as_f64().unwrap());
+        assert!((hold / weight - 1.0).abs() < 1e-3 && balance < 1e-5, "{down}: {hold} of {weight}, {balance}");
+    }
+}

@@ -269,10 +269,11 @@ impl StaticBody {
         self.iterate.x.iter().map(|u| self.lattice.rescale(u, 1.0 / self.lattice.scale())).collect()
     }
 
-    /// Force [N] and moment [N m] that a support exerts on a particle.
+    /// Force [N] and moment [N m] that a support exerts on a particle; it bears what loads the particle itself, too.
     pub fn reaction(&self, particle: u32) -> Dof6 {
         let row = self.lattice.row(particle as usize, &self.iterate.x, &self.lattice.stiffness());
-        self.lattice.rescale(&row, self.lattice.scale())
+        let load = self.load(particle as usize);
+        self.lattice.rescale(&std::array::from_fn(|d| row[d] - load[d]), self.lattice.scale())
     }
 
     /// The lattice with the bonds that hold.
