@@ -515,3 +515,63 @@ fn a_support_at_rest_bears_the_weight_of_what_it_holds() {
         assert!((hold / weight - 1.0).abs() < 1e-3 && balance < 1e-5, "{down}: {hold} of {weight}, {balance}");
     }
 }
+
+/// A rod that is twisted at rest, at the end of a support.
+const TWISTED: &str = r#"fractum = 1
+[materials.rock]
+density = "2500 kg/m^3"
+young_modulus = "50 MPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "rod"
+kind = "bonded"
+material = "rock"
+shape = "cylinder"
+length = "0.3 m"
+radius = "0.05 m"
+particles = 500
+[[supports]]
+group = "rod.x-"
+fix = "xyz"
+HOLD
+[[supports]]
+group = "rod.x+"
+displacement = { y = "-z*TWIST*t/1 s", z = "y*TWIST*t/1 s" }
+[solver]
+kind = "static"
+end = "1 s"
+[[probes]]
+name = "twists"
+moment = { group = "rod.x+", about = { axis = "x" } }
+[[probes]]
+name = "holds"
+moment = { group = "rod.x-", about = { axis = "x" } }
+[[probes]]
+name = "stored"
+energy = "elastic"
+"#;
+
+/// Moments of the supports at both ends of a rod are opposite, and the energy is half of their product with the twist.
+#[test]
+fn supports_twist_a_rod_by_the_moment_that_its_energy_says() {
+    const TWIST: f64 = 0.01;
+    for hold in ["", "fix_rotation = \"xyz\""] {
+        let place = Workplace::new(&TWISTED.replace("HOLD", hold).replace("TWIST", &TWIST.to_string()));
+        let summary = run(&place, "out", "1");
+        let [twists, holds, stored] =
+            ["twists", "holds", "stored"].map(|name| summary["probes"][name]["final"].as_f64().unwrap());
+        let torque = 2.0 * stored / TWIST;
+        let off = [twists, -holds].map(|moment| (moment / torque - 1.0).abs());
+        assert!(off.iter().all(|off| *off < 1e-4), "{hold}: {twists} {holds} {torque}");
+    }
+    // Where nothing is held no support bears a moment.
+    let place = Workplace::new(
+        &TWISTED
+            .replace("HOLD", "")
+            .replace("TWIST", "0.01")
+            .replace("{ group = \"rod.x-\", about", "{ group = \"rod.middle\", about")
+            .replace("particles = 500\n", "particles = 500\ngroups = { middle = \"abs(x - 0.15 m) < 20 mm\" }\n"),
+    );
+    let told = place.fractum(&["check", "case.toml"]);
+    assert!(told.code == Some(1) && told.stderr.contains("nothing holds it"), "{}", told.stderr);
+}

@@ -25,9 +25,9 @@ impl Measure for Moment {
     const KEY: &'static str = "moment";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].moment", K::Table, "", "Moment of the support reactions on a group, or of a rigid body on what touches it, about an axis, in N m; levers of supports are those without load, those of rigid bodies those of the moment"),
-        key("probes[].moment.group", K::Text, "", "Mesh group or rigid body; required without `where`"),
-        key("probes[].moment.where", K::Condition, "", "Which nodes, by their positions at the start; without `group`: which nodes of all solid bodies"),
+        key("probes[].moment", K::Table, "", "Moment of the support reactions on a group or a set of bonded particles, or of a rigid body on what touches it, about an axis, in N m; levers of supports are those without load, those of rigid bodies those of the moment"),
+        key("probes[].moment.group", K::Text, "", "Mesh group, set of particles or rigid body; required without `where`"),
+        key("probes[].moment.where", K::Condition, "", "Which nodes or particles, by their positions at the start; without `group`: which nodes of all solid bodies"),
         key("probes[].moment.about", K::Table, "", "The axis"),
         key("probes[].moment.about.point", K::Point(D::LENGTH), "[0, 0, 0]", "A point of it"),
         key("probes[].moment.about.axis", K::Direction, "\"z\"", "Its direction"),
@@ -42,8 +42,23 @@ impl Measure for Moment {
         Some((Moment { on: on?, about: about? }, D::ENERGY))
     }
 
+    fn may_be_particles(&self) -> Option<&Selection> {
+        Some(&self.on)
+    }
+
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
         let Axis { point, direction } = self.about;
+        if let (Some(particles), Some(group)) = (scene.names.particles(&self.on), &self.on.group) {
+            let places = scene.bonded.supports().places(&particles);
+            let turns = |&particle: &u32| scene.bonded.particles.held[particle as usize] >> 3 == 0;
+            let still: Vec<u32> = particles.iter().copied().filter(|particle| !turns(particle)).collect();
+            if !particles.is_empty() && places.is_empty() && still.is_empty() {
+                let found = format!("= \"{}\": nothing holds it", group.value);
+                scene.names.error(&group.place, found, "a set that a support prescribes");
+            }
+            let about = self.about;
+            return Some(ProbeOfPoints::boxed(Population::Particles, PointProbe::Moment { places, still, about }));
+        }
         // Levers at the instant of the forces: the body has moved on since.
         let moment = move |body: &RigidBody, dt: f64| {
             let place = body.frame.origin - body.frame.velocity * dt;
@@ -56,6 +71,9 @@ impl Measure for Moment {
         let nodes = scene.names.nodes(&self.on);
         let nodes = motion::with_copies(scene.solid, nodes);
         let places = scene.held_places(&self.on, &nodes, None);
-        Some(ProbeOfPoints::boxed(Population::Nodes, PointProbe::Moment { places, about: self.about }))
+        Some(ProbeOfPoints::boxed(
+            Population::Nodes,
+            PointProbe::Moment { places, still: Vec::new(), about: self.about },
+        ))
     }
 }

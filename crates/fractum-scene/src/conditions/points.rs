@@ -28,6 +28,11 @@ pub(crate) trait Points {
     /// Velocity at the half step [m/s].
     fn velocity(&self, point: usize) -> &Vec3;
 
+    /// Moment of the support that keeps a point from turning [N m]; points of solids do not turn.
+    fn moment_of_support(&self, _point: usize) -> Vec3 {
+        Vec3::zeros()
+    }
+
     /// Depth of a facet that is an edge in the plane; none in space.
     fn depth(&self, _facet: &[u32; 3]) -> Option<Depth> {
         None

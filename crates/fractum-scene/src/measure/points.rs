@@ -18,10 +18,12 @@ pub enum PointProbe {
         /// Which component.
         along: Along,
     },
-    /// Moment of the forces of the supports about an axis [N m]; levers are those without load.
+    /// Moment of the forces of the supports about an axis [N m], levers are those without load, and of what keeps particles from turning.
     Moment {
         /// Prescribed degrees of freedom; see [`Supports::places`].
         places: Vec<(u32, u32, u32)>,
+        /// Particles that supports keep from turning.
+        still: Vec<u32>,
         /// The axis.
         about: Axis,
     },
@@ -54,8 +56,12 @@ impl PointProbe {
     /// The points that it looks at.
     fn points(&self, supports: &Supports) -> Vec<u32> {
         match self {
-            PointProbe::Reaction { places, .. } | PointProbe::Moment { places, .. } => {
-                supports.points_at(places).collect()
+            PointProbe::Reaction { places, .. } => supports.points_at(places).collect(),
+            PointProbe::Moment { places, still, .. } => {
+                let mut points: Vec<u32> = supports.points_at(places).chain(still.iter().copied()).collect();
+                points.sort_unstable();
+                points.dedup();
+                points
             }
             PointProbe::Displacement { points, .. }
             | PointProbe::Velocity { points, .. }
@@ -77,9 +83,11 @@ impl PointProbe {
             PointProbe::Reaction { places, along } => {
                 supports.reaction_by(places, |point| along.at(population.reference(point)))
             }
-            PointProbe::Moment { places, about } => {
+            PointProbe::Moment { places, still, about } => {
                 let lever = |point| population.reference(point) - about.point;
-                supports.reaction_by(places, |point| about.direction.cross(&lever(point)))
+                let turning =
+                    still.iter().map(|&point| population.moment_of_support(point as usize).dot(&about.direction));
+                supports.reaction_by(places, |point| about.direction.cross(&lever(point))) + turning.sum::<f64>()
             }
             PointProbe::Displacement { points, along } => component(
                 points.iter().filter(|point| present(point)),

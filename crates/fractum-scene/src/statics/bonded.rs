@@ -206,6 +206,12 @@ impl BondedStatics {
             particles.orientation[i] = rotation_by(turn);
         }
         supports.set_reactions(|particle, axis| self.run.reaction(particle)[axis]);
+        for (i, held) in particles.held.iter().enumerate().filter(|(_, held)| *held >> 3 != 0) {
+            // As in motion: what would turn the particle did nothing hold it.
+            let support = self.run.reaction(i as u32);
+            particles.moment[i] =
+                Vec3::from_fn(|axis, _| if held >> (axis + 3) & 1 == 1 { -support[axis + 3] } else { 0.0 });
+        }
         let body = &mut bodies[0];
         note_closest(body, &self.run, reference, time);
         let turned = angle_of_most(&self.run.displacements());

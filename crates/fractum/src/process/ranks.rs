@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use fractum_case::model::{BodyKind, BondLawKind, Case, Output, SolverKind};
+use fractum_case::model::{BodyKind, BondLawKind, Case, Output, Probe, ProbeKind, SolverKind};
 use fractum_case::{Diagnostic, Diagnostics, Place, read_case};
 use fractum_dem::ParticleSubdomainSize;
 use fractum_fem::neighbours::{self, SubdomainSize};
@@ -254,6 +254,12 @@ fn not_for_ranks(case: &Case) -> Vec<(&Place, &'static str)> {
     found.extend(clumps.map(|clump| (&clump.place, "clumps of spheres")));
     found.extend(case.periodic.iter().map(|periodic| (&periodic.place, "a periodic box")));
     found.extend(case.flows.heat.iter().map(|heat| (&heat.place, "heat")));
+    let of_particles = |probe: &&Probe| match &probe.kind {
+        ProbeKind::Moment(moment) => case.particle_group(moment.on.group_name()).is_some(),
+        _ => false,
+    };
+    let moments = case.probes.iter().filter(of_particles);
+    found.extend(moments.map(|probe| (&probe.name.place, "a moment of supports on particles")));
     found
 }
 
