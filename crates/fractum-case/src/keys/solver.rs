@@ -43,7 +43,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.opening.step", K::Quantity(D::LENGTH), "required", "Growth of the opening in a step, > 0"),
     key("solver.opening.end", K::Quantity(D::LENGTH), "required", "Opening at which the run ends, > 0"),
     key("solver.linear_solver", K::Choice(names::<LinearSolver>), "\"auto\"", "Static with a solid, or modes. direct: Cholesky factorisation; faer: the same by the library faer; iterative: conjugate gradients; auto: direct or iterative, by size and reuse"),
-    key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, > 0"),
+    key("solver.tolerance", K::Quantity(D::NONE), "1e-4", "Static only: unbalanced force over the internal forces at which a step is accepted, above 0, at most 0.05"),
     key("solver.batch", K::Choice(names::<Batch>), "\"site\"", "Static with a bonded body. site: all overloaded particles break their bonds before equilibrium is solved again. one: only the most overloaded particle does"),
     key("solver.no_equilibrium", K::Choice(names::<NoEquilibrium>), "\"stop\"", "Static only, for a step without equilibrium. stop: the run ends. motion: the scene moves until it has come to rest"),
     key("solver.max_steps", K::Integer, "10000", "Static only: states of equilibrium after which the run ends in any case"),
