@@ -203,6 +203,32 @@ impl TimeFunction {
         looks.map(|t| (t, self.value(t, Vec3::zeros()))).find(|(_, value)| *value < 0.0)
     }
 
+    /// Whether the value goes up and down again, or down and up, between two instants [s] at one of some positions [m].
+    pub fn turns(&self, [begin, end]: [f64; 2], positions: &[Vec3]) -> bool {
+        let turns_at = |position: Vec3| {
+            let at = |look: usize| self.value(begin + (end - begin) * (look as f64 / LOOKS as f64), position);
+            let (mut low, mut high) = (at(0), at(0));
+            let (mut fell, mut rose) = (0.0f64, 0.0f64);
+            for value in (1..=LOOKS).map(at) {
+                (low, high) = (low.min(value), high.max(value));
+                (fell, rose) = (fell.max(high - value), rose.max(value - low));
+            }
+            fell.min(rose) > 1e-9 * (high - low)
+        };
+        let positions = if self.depends_on_position() { positions } else { &[Vec3::zeros()] };
+        self.depends_on_time() && positions.iter().any(|&position| turns_at(position))
+    }
+
+    /// Whether the value has both signs between two instants [s] at one of some positions [m].
+    pub fn changes_sign(&self, [begin, end]: [f64; 2], positions: &[Vec3]) -> bool {
+        let positions = if self.depends_on_position() { positions } else { &[Vec3::zeros()] };
+        self.depends_on_time()
+            && positions.iter().any(|&position| {
+                let at = |look: usize| self.value(begin + (end - begin) * (look as f64 / LOOKS as f64), position);
+                (0..=LOOKS).any(|look| at(look) > 0.0) && (0..=LOOKS).any(|look| at(look) < 0.0)
+            })
+    }
+
     /// How much later than another function it is [s]; none if it is a function of its own.
     pub fn delay(&self) -> Option<f64> {
         match self {

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use fractum_math::Vec3;
 
+use crate::folds::{fold_of_tetrahedra, fold_of_triangles};
 use crate::quality::{self, Summary};
 use crate::{Group, Mesh, topology};
 
@@ -11,7 +12,7 @@ use crate::{Group, Mesh, topology};
 const SLIVER: f64 = 0.1;
 
 /// Hints on what keeps a mesh from being used as it was probably meant, each with its remedy: no groups, elements in none,
-/// facets that lie inside of it, slivers, thin bodies, and bodies that lie upon or within each other.
+/// facets that lie inside of it, slivers, folds, thin bodies, and bodies that lie upon or within each other.
 pub fn hints(mesh: &Mesh) -> Vec<String> {
     let mut hints = Vec::new();
     if mesh.groups.iter().all(|group| group.element_count() == 0) {
@@ -36,8 +37,25 @@ pub fn hints(mesh: &Mesh) -> Vec<String> {
             (mesh.triangles[element].to_vec(), mesh.triangle_tags[element])
         }));
     }
+    hints.extend(folded(mesh));
     hints.extend(crate::bodies::hints(mesh));
     hints
+}
+
+/// Elements that lie on the same side of what they share.
+fn folded(mesh: &Mesh) -> Option<String> {
+    let (fold, tags, what) = if !mesh.tetrahedra.is_empty() {
+        (fold_of_tetrahedra(&mesh.tetrahedra)?, &mesh.tetrahedron_tags, "tetrahedra")
+    } else if mesh.is_in_plane() {
+        (fold_of_triangles(&mesh.triangles)?, &mesh.triangle_tags, "triangles")
+    } else {
+        return None;
+    };
+    let [first, second] = fold.elements.map(|element| tags[element as usize]);
+    Some(format!(
+        "{what} {first} and {second} lie on the same side of what they share ({} such pairs): the mesh is folded, or has elements upon each other",
+        fold.count
+    ))
 }
 
 /// What a mesh of shells or beams is good for.

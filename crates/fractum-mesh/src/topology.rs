@@ -200,10 +200,10 @@ fn count_below(values: &[u32], limit: u32) -> u32 {
 }
 
 /// A side of an element: its nodes ascending, the element, the local side.
-type Side<const S: usize> = ([u32; S], u32, usize);
+pub(crate) type Side<const S: usize> = ([u32; S], u32, usize);
 
 /// Gathers the sides of all elements by their lowest node, sorted, and hands those of one task to `collect`.
-fn by_sides<const N: usize, const S: usize, T: Send>(
+pub(crate) fn by_sides<const N: usize, const S: usize, T: Send>(
     elements: &[[u32; N]],
     local: [[usize; S]; N],
     collect: impl Fn(&[Side<S>]) -> T + Sync,

@@ -64,16 +64,23 @@ pub enum SceneError {
     /// Loads at the start are out of balance.
     #[error(
         "the forces of t = 0 do not balance: a force of ({x:.4e}, {y:.4e}, {z:.4e}) N is left for nothing to carry; the in-situ stress must act \
-         on every outer facet that no support holds, and a stress that changes from place to place needs the weight that goes with it"
+         on every outer facet that no support holds, and a stress that changes from place to place needs the weight that goes with it. Under gravity \
+         the rock around an opening is pushed up by the weight that is missing there: let [[supports]] with elastic or fix carry it"
     )]
     InSituUnbalanced {
-        /// Force on one node [N].
+        /// Sum of the forces [N].
         x: f64,
-        /// Force on one node [N].
+        /// Sum of the forces [N].
         y: f64,
-        /// Force on one node [N].
+        /// Sum of the forces [N].
         z: f64,
     },
+    /// Loads at the start turn the solids.
+    #[error(
+        "the forces of t = 0 do not balance: they turn the solids, and nothing carries that; the in-situ stress must act on every outer facet that no \
+         support holds, and its shear must be the same on facets across each other"
+    )]
+    InSituTurns,
     /// The in-situ stress is more than the material bears.
     #[error(
         "body {body}: in the state of t = 0 an edge at ({x:.4e}, {y:.4e}, {z:.4e}) m is at {ratio:.3} times its strength; a run begins with intact \

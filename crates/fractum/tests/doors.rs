@@ -3,7 +3,11 @@
 use std::fmt::Write;
 use std::fs;
 
-use crate::common::{Workplace, run};
+use fractum_math::Vec3;
+use fractum_mesh::generate::structured_rectangle;
+use fractum_mesh::{Mesh, MshFormat};
+
+use crate::common::{Workplace, bar as box_of_tetrahedra, mesh_bytes, run};
 
 /// A bar without lateral strain, pulled by a ten-thousandth of its length.
 const PULLED: &str = r#"fractum = 1
@@ -174,4 +178,34 @@ fn every_body_is_judged_by_its_own_elements() {
     let ended = place.fractum(&["mesh", "convert", "two.inp", "two.msh", "--to", "msh22"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert!(place.fractum(&["mesh", "info", "two.msh"]).stdout.contains("576 tetrahedra"));
+}
+
+/// A node beyond the side opposite to it turns elements inside out. They were flipped, and their overlap counted twice.
+#[test]
+fn a_folded_mesh_is_refused_with_the_elements_that_overlap() {
+    let case = r#"fractum = 1
+mesh = { file = "bar.msh" }
+materials = { rock = { density = 2600, young_modulus = "20 GPa", poisson_ratio = 0.2 } }
+bodies = [{ name = "body", kind = "solid", group = "body", material = "rock" THICK }]
+supports = [{ group = "x-", fix = "x" }]
+solver = { end = "10 us" }
+"#;
+    let fold = |mut mesh: Mesh, near: Vec3, way: Vec3| {
+        let node = mesh.nodes.iter_mut().find(|node| (**node - near).norm() < 1e-9).unwrap();
+        *node += way;
+        mesh
+    };
+    let sheet = structured_rectangle([4, 4], [0.4, 0.4], None);
+    let meshes = [
+        (fold(sheet, Vec3::new(0.2, 0.2, 0.0), Vec3::new(0.15, 0.02, 0.0)), ", thickness = \"1 mm\""),
+        (fold(box_of_tetrahedra(), Vec3::new(0.2, 0.04, 0.08), Vec3::new(0.08, 0.0, 0.01)), ""),
+    ];
+    for (mesh, thick) in meshes {
+        let place = Workplace::with_mesh(&case.replace("THICK", thick), &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+        let ended = place.fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
+        assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+        assert!(ended.stderr.contains("overlap: both lie on the same side"), "{}", ended.stderr);
+        let told = place.fractum(&["mesh", "info", "bar.msh"]).stdout;
+        assert!(told.contains("the mesh is folded"), "{told}");
+    }
 }

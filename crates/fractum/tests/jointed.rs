@@ -191,3 +191,35 @@ fn a_joint_through_a_support_and_a_hole_slides_under_little_friction_alone() {
         assert!(slides || (top / 1.875e-6 - 1.0).abs() < 0.01, "{angle}: {top}");
     }
 }
+
+/// A block of 1 m on another one, pushed by 1 mm, back as far to the other side, and home, under 1 MPa.
+const SHEARED: &str = r#"fractum = 1
+mesh = { file = "bar.msh", joints = [{ name = "joint", table = [[0, "0.5 m", "1 m", "0.5 m"]] }] }
+materials = { rock = { density = "2600 kg/m^3", young_modulus = "20 GPa", poisson_ratio = 0 } }
+bodies = [{ name = "rock", kind = "solid", group = "body", material = "rock" }]
+solver = { kind = "static", end = "1 s" }
+interfaces = [{ group = "joint", bonded = false, residual_friction_angle = "30 deg" }]
+loads = [{ group = "y+", pressure = { ramp = [["0 s", 0], ["0.02 s", "1 MPa"]] } }]
+probes = [
+  { name = "shear", reaction = { where = "y > 0.6 m", along = "x" } },
+  { name = "largest", expression = "max(shear)/(1 MPa*1 m*1 m)", unit = "1" },
+]
+[[supports]]
+group = "y-"
+fix = "xy"
+[[supports]]
+where = "y > 0.6 m"
+displacement = { x = { ramp = [["0 s", 0], ["0.25 s", "1 mm"], ["0.75 s", "-1 mm"], ["1 s", 0]] } }
+"#;
+
+/// The state at the end is not all that counts: what slides has rubbed on its way.
+#[test]
+fn a_joint_that_is_sheared_and_brought_back_has_rubbed_without_a_step_being_asked_for() {
+    let one = run(&place(SHEARED, &structured_rectangle([4, 4], [1.0, 1.0], None)), "one", "1");
+    let friction = 30f64.to_radians().tan();
+    let largest = one["probes"]["largest"]["final"].as_f64().unwrap();
+    assert!((largest / friction - 1.0).abs() < 0.01, "{largest}");
+    // Four ways of 1 mm, less what is elastic as it turns; steps of 0.08 mm see the turns to one of them each.
+    let work = energy(&one, "friction") / (friction * 1e6 * 4e-3);
+    assert!((0.8..1.0).contains(&work), "{work}");
+}

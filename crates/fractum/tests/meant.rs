@@ -14,6 +14,38 @@ use crate::warnings::{BAR, halves};
 
 const MISTAKES: &str = include_str!("wrong/meant.toml");
 
+/// A square under in-situ stress, across which a joint goes.
+const JOINT: &str = r#"fractum = 1
+mesh = { file = "bar.msh", joints = [{ name = "joint", table = [["0 m", "0.11 m", "0.4 m", "0.11 m"]] }] }
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "20 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "rock"
+kind = "solid"
+group = "body"
+material = "rock"
+thickness = "100 mm"
+[[interfaces]]
+group = "joint"
+tensile_strength = "1 MPa"
+cohesion = "2 MPa"
+fracture_energy = "100 J/m^2"
+residual_friction_angle = "30 deg"
+pressure = "0.1 MPa"
+[in_situ]
+stress = { xx = "-2 MPa", yy = "-3 MPa" }
+groups = ["x-", "x+", "y-", "y+"]
+[damping]
+mass = "100 1/s"
+[solver]
+end = "2 ms"
+[[probes]]
+name = "way"
+velocity = { group = "x+", along = "x" }
+"#;
+
 /// What is done to a bar that breaks, rests, is heated, struck, or blasted.
 fn cases() -> BTreeMap<&'static str, String> {
     let support = "[[supports]]\ngroup = \"x+\"\nvelocity = { x = { ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 mm/s\"]] } }\n";
@@ -44,6 +76,7 @@ fn cases() -> BTreeMap<&'static str, String> {
         ("tool", replaced(ball, "end = \"2 ms\"")),
         ("heated", heated.replace("history = { every = \"20 us\" }", "")),
         ("plate", BAR.replace("PLANE", "xy")),
+        ("joint", JOINT.to_owned()),
         ("bead", crate::told::BEAD.to_owned()),
         ("bar", bar),
     ])
@@ -98,7 +131,7 @@ fn nearly_all_mistakes_are_told() {
         .unwrap();
     fs::write(place.path("tooth.stl"), stl_box([231.0, 90.0, 51.0], [5.0, 50.0, 5.0])).unwrap();
     fs::write(place.path("words.csv"), "a bead of ten millimetres\n").unwrap();
-    let mesh_of = |case: &str| if case == "plate" { "plate" } else { "bar" };
+    let mesh_of = |case: &str| if ["plate", "joint"].contains(&case) { "plate" } else { "bar" };
     let checked = |case: &str, name: &str| {
         fs::write(place.path("bar.msh"), mesh_bytes(&mesh(name), MshFormat::V4_1Binary)).unwrap();
         let case = if name == "plate" { case.replace("\"xyz\"", "\"xy\"") } else { case.to_owned() };

@@ -10,7 +10,7 @@ use fractum_fem::{
 };
 use fractum_math::Vec3;
 use fractum_mesh::renumber::hilbert_order;
-use fractum_mesh::topology;
+use fractum_mesh::{fold_of_tetrahedra, fold_of_triangles, topology};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 
@@ -115,6 +115,9 @@ pub(super) fn solid_parts<'a>(context: &mut Context<'a>) -> Option<Vec<Part<'a>>
         check_dimension(context, part);
     }
     check_overlap(context, &parts);
+    if context.diagnostics.is_empty() {
+        check_folds(context, &parts);
+    }
     context.diagnostics.is_empty().then_some(parts)
 }
 
@@ -158,6 +161,36 @@ pub(super) fn gone(case: &Case, parts: &[Part]) -> Vec<usize> {
 /// Numbers of the parts of these names.
 pub(super) fn numbers<'n>(parts: &[Part], names: impl Iterator<Item = &'n str>) -> Vec<usize> {
     names.filter_map(|name| parts.iter().position(|part| part.name == name)).collect()
+}
+
+/// Elements lie on both sides of what they share: those of all bodies, and of each one where bodies come and go.
+fn check_folds(context: &mut Context<'_>, parts: &[Part]) {
+    let at_once = if context.case.excavates() { 1 } else { parts.len().max(1) };
+    for parts in parts.chunks(at_once) {
+        let elements: Vec<u32> = parts.iter().flat_map(|part| &part.elements).copied().collect();
+        let mesh = context.mesh;
+        let (found, tags) = match parts[0].shape {
+            fem::ElementKind::T4 => {
+                let own: Vec<[u32; 4]> = elements.iter().map(|&e| mesh.tetrahedra[e as usize]).collect();
+                (fold_of_tetrahedra(&own), &mesh.tetrahedron_tags)
+            }
+            fem::ElementKind::T3 => {
+                let own: Vec<[u32; 3]> = elements.iter().map(|&e| mesh.triangles[e as usize]).collect();
+                (fold_of_triangles(&own), &mesh.triangle_tags)
+            }
+        };
+        let Some(fold) = found else { continue };
+        let [first, second] = fold.elements.map(|element| elements[element as usize]);
+        let part = parts.iter().find(|part| part.elements.contains(&first)).unwrap_or(&parts[0]);
+        let more = if fold.count > 1 { format!(", {} such pairs", fold.count) } else { String::new() };
+        let found = format!(
+            "= \"{}\": elements {} and {} overlap: both lie on the same side of the facet that they share{more}",
+            part.body.group.value, tags[first as usize], tags[second as usize]
+        );
+        let remedy = "one of them is inside out, or lies upon the other: mesh again, or take it out";
+        let note = Diagnostic::error(&part.place, found).expected("a mesh without folds");
+        context.diagnostics.push(note.remedy(remedy));
+    }
 }
 
 /// An element may belong to one body only of those that are there at a time.

@@ -19,7 +19,7 @@ const LARGE: f64 = 15.0;
 /// Smallest extent of a body whose mesh names a unit [m]: a mesh below it is probably in metres.
 const SMALL: f64 = 5e-4;
 /// Length of the process zone over the extent of its body beyond which the body cannot crack.
-const ZONES: f64 = 500.0;
+pub(super) const ZONES: f64 = 500.0;
 /// Strain at which solids crack, where the material does not tell [-].
 const STRAIN: f64 = 1e-4;
 /// Bits of the coordinates that the displacement at cracking needs: two of its decimal digits at least.
@@ -28,6 +28,8 @@ const BITS: f64 = 10.0;
 const ACCELERATION: f64 = 5e3;
 /// Pressure below which nothing happens to a solid [Pa].
 const PRESSURE: f64 = 10.0;
+/// Peak of a pulse below which nothing happens to a solid [Pa].
+const PULSE: f64 = 1e3;
 /// Instants at which expressions of time are looked at.
 const LOOKS: u32 = 1000;
 
@@ -211,16 +213,24 @@ fn farthest(course: &[(f64, f64)]) -> f64 {
 
 fn doubts_of_load(kind: &LoadKind, during: [f64; 2]) -> Vec<Diagnostic> {
     let doubt = |function: &Spanned<TimeFunction>| {
-        let value = largest(&course(&function.value, during)?);
+        let pulse = function.value.rise().map(|[_, at]| function.value.value(at, Vec3::zeros()).abs());
+        let value = pulse.map_or_else(|| course(&function.value, during).map(|own| largest(&own)), Some)?;
+        let least = if pulse.is_some() { PULSE } else { PRESSURE };
         // An expression may be larger between the instants at which it is looked at.
         let is_bound = !matches!(&function.value, TimeFunction::Expression(field) if field.depends_on_time());
         let (unit, expected, remedy) = match kind {
             LoadKind::Gravity { .. } if value > ACCELERATION => {
                 ("m/s^2", "at most 5000 m/s^2 (the Earth has 9.81)", "did you mean mm/s^2?")
             }
-            LoadKind::Pressure { .. } | LoadKind::Traction { .. } if is_bound && value > 0.0 && value < PRESSURE => {
-                ("Pa", "10 Pa at least (the air has 100 kPa)", "did you mean MPa?")
-            }
+            LoadKind::Pressure { .. } | LoadKind::Traction { .. } if is_bound && value > 0.0 && value < least => (
+                "Pa",
+                if pulse.is_some() {
+                    "1 kPa at least (windows break at some)"
+                } else {
+                    "10 Pa at least (the air has 100 kPa)"
+                },
+                "did you mean MPa?",
+            ),
             _ => return None,
         };
         let found = format!("is {} at most during the run", quantity(value, unit));

@@ -12,6 +12,8 @@ use crate::model::{Case, InSitu, SolverKind};
 
 /// Tension over the largest stress that is told.
 const TENSION: f64 = 0.01;
+/// Largest stress below which a rock mass bears nothing [Pa]: a centimetre of it.
+const FAINT: f64 = 250.0;
 /// Share of the area of the far field along an axis above which its stress should be given.
 const FACING: f64 = 0.1;
 
@@ -22,7 +24,8 @@ pub(super) fn doubts_of_in_situ(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec
         return Vec::new();
     };
     let pulls = pulling(stress, mesh, bodies);
-    pulls.into_iter().chain(forgotten(case, stress, mesh, bodies)).collect()
+    let pulls = pulls.into_iter().chain(faint(stress, mesh, bodies));
+    pulls.chain(forgotten(case, stress, mesh, bodies)).collect()
 }
 
 /// Rock that is pulled, as it is where compression was written as positive.
@@ -56,6 +59,18 @@ fn pulling(stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     );
     let note = Diagnostic::warning(Code::Suction, &stress.place, found).expected("compression, which is negative");
     Some(note.remedy("change its sign, unless the body is pulled"))
+}
+
+/// A stress that is none: its unit was forgotten.
+fn faint(stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let nodes = bodies.iter().flat_map(|body| &body.nodes);
+    let largest = nodes.map(|&node| stress.at(mesh.nodes[node as usize]).to_matrix().amax()).fold(0.0, f64::max);
+    if largest == 0.0 || largest >= FAINT {
+        return None;
+    }
+    let found = format!(".stress is {} at most", quantity(largest, "Pa"));
+    let note = Diagnostic::warning(Code::UnitOfLoad, &stress.place, found).expected(format!("{FAINT} Pa at least"));
+    Some(note.remedy("did you mean MPa? A number without a unit is in Pa"))
 }
 
 /// A normal stress that is not given, along which facets of the far field look: nothing presses there.

@@ -3,12 +3,14 @@
 use std::collections::HashSet;
 
 use fractum_fem::{ElementKind, Solid};
+use fractum_math::Vec3;
 use fractum_mesh::{CutAlong, CutError, Mesh};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
 use super::bodies::{Numbering, Part};
+use super::doubts::ZONES;
 use super::{Context, function};
 use crate::model::{Case, Interface, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
 use crate::read::interfaces::LEAST_DUCTILITY;
@@ -218,6 +220,15 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
             ));
         }
         let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };
+        let extent = extent(&scene.solid);
+        if zone > ZONES * extent {
+            let [zone, extent] = [zone, extent].map(|length| quantity(length, "m"));
+            let found = format!(": its process zone E G_I/ft^2 is {zone} long, beside solids of {extent}");
+            let note = Diagnostic::warning(Code::ProcessZone, &interface.place, found);
+            let expected = format!("solids of more than 1/{ZONES} of the zone");
+            let remedy = "check tensile_strength, fracture_energy and mesh.unit; such an interface yields as a whole";
+            doubts.push(note.expected(expected).remedy(remedy));
+        }
         if zone < IN_ZONE * size {
             let place: &Place = &interface.place;
             let [zone, size] = [zone, size].map(|length| quantity(length, "m"));
@@ -227,6 +238,13 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
         }
     }
     doubts
+}
+
+/// Largest extent of all solids along an axis [m].
+fn extent(solid: &Solid) -> f64 {
+    let far =
+        |at: fn(&Vec3, &Vec3) -> Vec3, from: f64| solid.reference.iter().fold(Vec3::repeat(from), |a, b| at(&a, b));
+    (far(|a, b| a.sup(b), f64::NEG_INFINITY) - far(|a, b| a.inf(b), f64::INFINITY)).max()
 }
 
 /// Whether an interface may slide under friction in motion that nothing damps.

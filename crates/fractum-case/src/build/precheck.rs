@@ -84,7 +84,8 @@ fn check_groups(context: &mut Context<'_>) {
         if names.contains(&group.value.as_str()) {
             let nodes = || context.mesh.group_nodes(&group.value);
             if *empty.entry(&group.value).or_insert_with(|| nodes().is_empty()) {
-                context.error(&group.place, format!("= \"{}\"", group.value), "the group has no elements in the mesh");
+                let found = format!("= \"{}\": the group has no elements in the mesh", group.value);
+                context.error(&group.place, found, "a group of some; Gmsh writes them with Mesh.SaveAll = 0");
             }
             continue;
         }
@@ -240,6 +241,12 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
     for condition in case.flows.heat.iter().flat_map(|heat| &heat.conditions) {
         functions.push((condition.kind.function(), Some(&condition.on)));
+    }
+    for (function, _) in case.interfaces.iter().filter_map(|interface| interface.pressure.as_ref()) {
+        if let Some((time, value)) = function.value.negative(case.solver.end) {
+            let found = format!("is {} at t = {}", quantity(value, "Pa"), quantity(time, "s"));
+            context.error(&function.place, found, "0 or more: what is between the sides pushes them apart");
+        }
     }
     let pressures = case.interfaces.iter().filter_map(|interface| interface.pressure.as_ref());
     functions.extend(pressures.map(|(function, _)| (function, None)));

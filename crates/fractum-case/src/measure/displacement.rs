@@ -52,6 +52,7 @@ impl Measure for Displacement {
             return rigid;
         }
         let (population, points) = scene.points(&self.on);
+        scene.check_direction(&self.on, population, self.along);
         Some(ProbeOfPoints::boxed(population, PointProbe::Displacement { points, along: self.along }))
     }
 }

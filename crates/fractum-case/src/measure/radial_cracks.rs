@@ -1,6 +1,8 @@
 //! Cracks that run away from a hole.
 
 use fractum_dem::crack_shape::Axis;
+use fractum_math::Vec3;
+use fractum_output::number::quantity;
 use fractum_scene::{Probe, RadialCracks, RadialMeasure};
 
 use super::Measure;
@@ -23,8 +25,8 @@ pub struct RadialCracksAbout {
     pub measure: RadialMeasure,
     /// Axis of the hole.
     pub about: Axis,
-    /// Radius of the circle on which they are counted [m].
-    pub radius: f64,
+    /// Radius of the circle on which they are counted [m], where they are counted.
+    pub radius: Option<Spanned<f64>>,
     /// Where elements count, by the position of their middles; everywhere if absent.
     pub within: Option<Spanned<Field>>,
 }
@@ -47,10 +49,10 @@ impl Measure for RadialCracksAbout {
         let measure = table.choice("measure").required();
         let about = axis(&table);
         let radius = if measure == Some(RadialMeasure::Count) {
-            table.quantity("radius").positive().required()
+            table.quantity("radius").positive().spanned().required().map(Some)
         } else {
             table.refuse("radius", "with this measure");
-            Some(0.0)
+            Some(None)
         };
         let within = optional(&table, "where", |name| condition(&table, name).spanned().given());
         table.finish("here");
@@ -61,6 +63,22 @@ impl Measure for RadialCracksAbout {
 
     fn resolve(&self, scene: &mut Scenery<'_>) -> Option<Box<dyn Probe>> {
         let inside = scene.inside_cracks(self.within.as_ref());
-        Some(Box::new(RadialCracks::new(scene.solid, self.measure, self.about, self.radius, inside)))
+        let distance = |place: &Vec3| {
+            let way = place - self.about.point;
+            (way - self.about.direction * way.dot(&self.about.direction)).norm()
+        };
+        let (near, far) = scene
+            .solid
+            .reference
+            .iter()
+            .map(distance)
+            .fold((f64::INFINITY, 0.0), |(near, far), own| (f64::min(near, own), f64::max(far, own)));
+        if let Some(radius) = self.radius.as_ref().filter(|own| near < far && !(near..=far).contains(&own.value)) {
+            let found = format!("= {}: no solid is that far from the axis", quantity(radius.value, "m"));
+            let expected = format!("between {} and {}, where solids are", quantity(near, "m"), quantity(far, "m"));
+            scene.names.error(&radius.place, found, &expected);
+        }
+        let radius = self.radius.as_ref().map_or(0.0, |radius| radius.value);
+        Some(Box::new(RadialCracks::new(scene.solid, self.measure, self.about, radius, inside)))
     }
 }

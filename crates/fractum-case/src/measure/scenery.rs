@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use fractum_fem::Solid;
+use fractum_fem::{ElementKind, Solid};
 use fractum_math::Vec3;
 use fractum_scene::{
     Along, Bonded, BondedBody, ContactBody, InsideCracks, Population, Probe, ProbedScene, RigidBody, Supports,
@@ -62,6 +62,9 @@ pub(crate) struct Scenery<'a> {
     pub(crate) names: &'a mut dyn Names,
 }
 
+/// Part of a direction in a plane that is rounding.
+const ACROSS: f64 = 1e-9;
+
 /// A vector of a rigid body, after a step of this size [s].
 pub(super) type OfRigid = fn(&RigidBody, f64) -> Vec3;
 
@@ -96,6 +99,17 @@ impl Scenery<'_> {
         match self.names.particles(on) {
             Some(particles) => (Population::Particles, particles),
             None => (Population::Nodes, self.names.nodes(on)),
+        }
+    }
+
+    /// Notes a direction in which nothing moves: that across the plane of 2D solids.
+    pub(super) fn check_direction(&mut self, on: &Selection, population: Population, along: Along) {
+        let Along::Direction(direction) = along else { return };
+        let mut bodies = (0..self.solid.body_count()).map(|body| self.solid.body(body).shape);
+        let plane = population == Population::Nodes && bodies.all(|shape| shape == ElementKind::T3);
+        if plane && direction.xy().norm() < ACROSS {
+            let found = ": 2D solids lie in the xy-plane and do not move along z".to_owned();
+            self.error_at(on, found, "a direction in the plane");
         }
     }
 

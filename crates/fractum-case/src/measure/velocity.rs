@@ -50,6 +50,7 @@ impl Measure for Velocity {
             return rigid;
         }
         let (population, points) = scene.points(&self.on);
+        scene.check_direction(&self.on, population, self.along);
         Some(ProbeOfPoints::boxed(population, PointProbe::Velocity { points, along: self.along }))
     }
 }

@@ -185,7 +185,7 @@ fn compressive_strength(
         table.refuse("compressive_strength", "with this criterion");
         return tensile_strength.map(|strength| STRENGTH_RATIO * strength);
     }
-    let given = table.quantity("compressive_strength").positive();
+    let given = table.quantity("compressive_strength").physical().usual(&STRENGTH);
     let tensile_strength = tensile_strength?;
     let given = given.check(|strength| *strength > tensile_strength, "more than the tensile strength");
     let strength = given.or_if_absent(STRENGTH_RATIO * tensile_strength)?;

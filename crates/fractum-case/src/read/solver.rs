@@ -334,7 +334,10 @@ fn statics(table: &Table<'_>, bodies: Option<&[Body]>) -> Option<StaticOptions> 
         control,
         opening: opening?,
         linear_solver: table.choice("linear_solver").or(LinearSolver::Auto),
-        tolerance: table.quantity("tolerance").positive().or(1e-4),
+        tolerance: table
+            .quantity("tolerance")
+            .check(|&part| part > 0.0 && part <= 0.05, "above 0, at most 0.05")
+            .or(1e-4),
         most_steps: table.integer("max_steps").check(|&steps| steps > 0, "at least 1").or(10_000),
         batch: table.choice("batch").or(Batch::PerSite),
         no_equilibrium: table.choice("no_equilibrium").or(NoEquilibrium::Stop),

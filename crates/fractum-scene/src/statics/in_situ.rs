@@ -101,15 +101,18 @@ fn check_pins(scene: &Scene, held: &[u8], scale: f64) -> Result<(), SceneError> 
     let largest = |vectors: &[Vec3]| vectors.iter().map(|v| v.norm()).fold(0.0, f64::max);
     let moved = largest(&scene.solid.displacement) / largest(&scene.solid.reference).max(f64::MIN_POSITIVE);
     let allowed = UNBALANCED.max(MOVED * moved);
+    let (mut all_carried, mut most) = (Vec3::zeros(), 0.0f64);
     for (node, (&all, force)) in held.iter().zip(&scene.solid.force).enumerate() {
         let own = all & !scene.supports.held().get(node).copied().unwrap_or(0);
         let carried = Vec3::from_fn(|axis, _| if own & (1 << axis) == 0 { 0.0 } else { force[axis] });
-        if carried.norm() > allowed * scale {
-            let [x, y, z] = carried.into();
-            return Err(SceneError::InSituUnbalanced { x, y, z });
-        }
+        (all_carried, most) = (all_carried + carried, most.max(carried.norm()));
     }
-    Ok(())
+    if most <= allowed * scale {
+        return Ok(());
+    }
+    let turns = all_carried.norm() <= allowed * scale;
+    let [x, y, z] = all_carried.into();
+    Err(if turns { SceneError::InSituTurns } else { SceneError::InSituUnbalanced { x, y, z } })
 }
 
 /// No edge may be over its strength.
