@@ -52,6 +52,8 @@ const EXCESS_SLOPE: f64 = 120.0;
 const WINDOW: f64 = 0.08;
 /// Narrowest extent of a domain, in mean diameters.
 const NARROWEST: f64 = 2.5;
+/// The same of a box that repeats, in which no particle may meet two images of another: the longest bonds are two diameters long.
+const NARROWEST_PERIOD: f64 = 5.0;
 /// Net force over mean contact force at which a state counts as relaxed.
 const BALANCE: f64 = 0.02;
 /// The same for the first relaxation after forced insertion.
@@ -162,13 +164,14 @@ pub fn pack_and_tell(spec: &PackSpec, tell: &dyn Fn(PackProgress)) -> Result<Pac
 
     let order = spatial_order(&assembly.position);
     let sorted = |i: &u32| *i as usize;
+    let inside = |x: &Vec3| spec.domain.period().map_or(*x, |period| period.within(x));
     let names = spec.domain.wall_names();
     let set = |w: usize| (0..count as u32).filter(|&k| walls[order[k as usize] as usize] >> w & 1 == 1).collect();
     Ok(Packing {
         domain: spec.domain.clone(),
         seed: spec.seed,
         dispersion: spec.dispersion,
-        position: order.iter().map(|i| assembly.position[sorted(i)]).collect(),
+        position: order.iter().map(|i| inside(&assembly.position[sorted(i)])).collect(),
         radius: order.iter().map(|i| assembly.radius[sorted(i)]).collect(),
         walls: names.iter().enumerate().map(|(w, name)| (name.to_string(), set(w))).collect(),
         compaction,
@@ -214,8 +217,9 @@ fn plan(spec: &PackSpec) -> Result<(usize, f64), PackError> {
     let (lower, upper) = spec.domain.bounds();
     let extent = (upper - lower).min();
     let across = extent / (2.0 * radius);
-    if count < 20 && matches!(spec.size, PackSize::MeanRadius(_)) || across < NARROWEST {
-        return Err(PackError::TooSmall { count, extent, across, needed: NARROWEST });
+    let needed = if spec.domain.period().is_some() { NARROWEST_PERIOD } else { NARROWEST };
+    if count < 20 && matches!(spec.size, PackSize::MeanRadius(_)) || across < needed {
+        return Err(PackError::TooSmall { count, extent, across, needed });
     }
     if !(20..=20_000_000).contains(&count) {
         return Err(PackError::Count(count));
@@ -240,6 +244,7 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
     let mut next = vec![u32::MAX; radius.len()];
     let mut position: Vec<Vec3> = Vec::with_capacity(radius.len());
     let coordinates = |p: &Vec3| [0, 1, 2].map(|a| (((p[a] - lower[a]) / cell).max(0.0) as usize).min(size[a] - 1));
+    let period = domain.period();
     let mut failures = 0;
     for (i, &r) in radius.iter().enumerate() {
         let mut best: Option<(f64, Vec3)> = None;
@@ -260,18 +265,24 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
             if domain.depth(&x) < r {
                 continue;
             }
-            let [cx, cy, cz] = coordinates(&x);
             let mut gap = f64::INFINITY;
-            for z in cz.saturating_sub(1)..=(cz + 1).min(size[2] - 1) {
-                for y in cy.saturating_sub(1)..=(cy + 1).min(size[1] - 1) {
-                    for c in cx.saturating_sub(1)..=(cx + 1).min(size[0] - 1) {
-                        let mut j = first[(z * size[1] + y) * size[0] + c];
-                        while j != u32::MAX {
-                            gap = gap.min((position[j as usize] - x).norm() - r - radius[j as usize]);
-                            j = next[j as usize];
+            let mut look = |x: Vec3| {
+                let [cx, cy, cz] = coordinates(&x);
+                for z in cz.saturating_sub(1)..=(cz + 1).min(size[2] - 1) {
+                    for y in cy.saturating_sub(1)..=(cy + 1).min(size[1] - 1) {
+                        for c in cx.saturating_sub(1)..=(cx + 1).min(size[0] - 1) {
+                            let mut j = first[(z * size[1] + y) * size[0] + c];
+                            while j != u32::MAX {
+                                gap = gap.min((position[j as usize] - x).norm() - r - radius[j as usize]);
+                                j = next[j as usize];
+                            }
                         }
                     }
                 }
+            };
+            match period {
+                None => look(x),
+                Some(period) => period.images(x, cell).for_each(look),
             }
             if best.is_none_or(|(other, _)| gap > other) {
                 best = Some((gap, x));

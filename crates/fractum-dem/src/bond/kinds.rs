@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use fractum_contact::{Image, PeriodicCell};
 use fractum_kernels::bond::{BeamSection, BondEnergy, BondForces, BondLaw, LocalBond, Separation};
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::graph::BondGraph;
@@ -72,9 +73,23 @@ macro_rules! laws {
                 shares: &[f64],
                 law: impl Into<AnyBondLaw>,
             ) -> Result<Self, DemError> {
+                Self::within(particles, pairs, shares, law, None)
+            }
+
+            /// See [`BondNetwork::within`].
+            ///
+            /// # Errors
+            /// As [`Bonds::with_shares`].
+            pub fn within(
+                particles: &Particles,
+                pairs: &[[u32; 2]],
+                shares: &[f64],
+                law: impl Into<AnyBondLaw>,
+                cell: Option<&PeriodicCell>,
+            ) -> Result<Self, DemError> {
                 Ok(match law.into() {
                     $(AnyBondLaw::$name(law) => {
-                        Bonds::$name(BondNetwork::with_shares(particles, pairs, shares, law)?)
+                        Bonds::$name(BondNetwork::within(particles, pairs, shares, law, cell)?)
                     })*
                 })
             }
@@ -131,6 +146,31 @@ impl Bonds {
     /// Whether a bond still holds.
     pub fn is_live(&self, bond: usize) -> bool {
         each!(self, network => network.is_live(bond))
+    }
+
+    /// See [`BondNetwork::set_cell`].
+    pub fn set_cell(&mut self, cell: &PeriodicCell) {
+        each!(self, network => network.set_cell(cell));
+    }
+
+    /// See [`BondNetwork::through_box`].
+    pub fn through_box(&self) -> Option<(&PeriodicCell, &[Image])> {
+        each!(self, network => network.through_box())
+    }
+
+    /// See [`BondNetwork::gap`].
+    pub fn gap(&self, bond: usize, particles: &Particles) -> Vec3 {
+        each!(self, network => network.gap(bond, particles))
+    }
+
+    /// See [`BondNetwork::ends`].
+    pub fn ends(&self, bond: usize, reference: &[Vec3]) -> [Vec3; 2] {
+        each!(self, network => network.ends(bond, reference))
+    }
+
+    /// See [`BondNetwork::sums_through_box`].
+    pub fn sums_through_box(&self) -> Option<[Mat3; 2]> {
+        each!(self, network => network.sums_through_box())
     }
 
     /// Distance of the particles of a bond without load [m].

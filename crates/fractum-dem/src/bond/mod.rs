@@ -14,6 +14,7 @@ mod separating;
 mod softening_spring;
 mod space_cells;
 mod subdomain;
+mod through_box;
 
 pub use fractum_kernels::bond::{
     BadLaw, BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, Crushing,
