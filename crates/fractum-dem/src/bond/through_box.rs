@@ -136,3 +136,100 @@ impl<L: BondLaw> BondNetwork<L> {
         pair
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bond::{BeamSection, Bonds};
+    use fractum_math::{Mat3, Rotation};
+
+    /// Particles along an edge of the box, and their distance [m].
+    const COUNT: usize = 4;
+    const APART: f64 = 2.0;
+
+    /// A cubic lattice of beams in a box of [`COUNT`]³ particles, each of which stands in some image of the box.
+    fn lattice(section: BeamSection) -> (Particles, Bonds, PeriodicCell) {
+        let size = APART * COUNT as f64;
+        let edges = Mat3::identity() * size;
+        let cell = PeriodicCell { corner: Vec3::zeros(), edges, velocity: Mat3::zeros(), repeats: [true; 3] };
+        let at = |i: usize| [i % COUNT, i / COUNT % COUNT, i / COUNT / COUNT];
+        let number = |at: [usize; 3]| (at[0] + COUNT * (at[1] + COUNT * at[2])) as u32;
+        let place = |i: usize| {
+            let image = Vec3::from_fn(|k, _| ((i * (k + 2)) % 5) as f64 - 2.0);
+            Vec3::from(at(i).map(|k| k as f64 * APART)) + image * size
+        };
+        let position: Vec<Vec3> = (0..COUNT.pow(3)).map(place).collect();
+        let next = |i: usize, axis: usize| {
+            let mut other = at(i);
+            other[axis] = (other[axis] + 1) % COUNT;
+            [i as u32, number(other)]
+        };
+        let pairs: Vec<[u32; 2]> = (0..position.len()).flat_map(|i| [0, 1, 2].map(|axis| next(i, axis))).collect();
+        let mass = position.len() as f64;
+        let particles = Particles::at_rest(position, vec![0.5 * APART; COUNT.pow(3)], mass).unwrap();
+        let bonds = Bonds::within(&particles, &pairs, &[], section, Some(&cell)).unwrap();
+        (particles, bonds, cell)
+    }
+
+    /// The lattice after a small uniform gradient of displacement, whose particles turn with its rotation; stress over the box [Pa], and energy
+    /// over its volume [Pa].
+    fn strained(section: BeamSection, gradient: Mat3) -> (Mat3, f64) {
+        let (mut particles, mut bonds, mut cell) = lattice(section);
+        let move_by = Mat3::identity() + gradient;
+        particles.position.iter_mut().for_each(|x| *x = move_by * *x);
+        let spin =
+            Vec3::new(gradient.m32 - gradient.m23, gradient.m13 - gradient.m31, gradient.m21 - gradient.m12) * 0.5;
+        particles.orientation.fill(Rotation::from_scaled_axis(spin));
+        cell.edges = move_by * cell.edges;
+        bonds.set_cell(&cell);
+        particles.clear_forces();
+        bonds.add_forces(&mut particles);
+        let [through, virial] = bonds.sums_through_box().unwrap();
+        let volume = cell.volume();
+        // Nothing of a uniform lattice is out of balance, and it is the sides that bear it.
+        let size = virial.norm() / APART;
+        assert!(particles.force.iter().all(|force| force.norm() < 1e-9 * size));
+        // Places of some boxes round such small strains off by 1e-8.
+        assert!((through * cell.edges.transpose() - virial).norm() < 1e-6 * virial.norm());
+        (-virial / volume, bonds.energy(&particles).total() / volume)
+    }
+
+    #[test]
+    fn a_cubic_lattice_has_the_stress_and_the_energy_of_its_beams() {
+        let section = BeamSection::new(3e9, 0.6).unwrap();
+        let strain = 1e-6;
+        // Along the edges EA/a²; in shear both rows of beams bend by half the angle, with 12 EI/a³ each.
+        let along = section.axial() / APART.powi(2);
+        let across = 6.0 * section.bending() / APART.powi(4);
+        for axis in 0..3 {
+            let mut gradient = Mat3::zeros();
+            gradient[(axis, axis)] = strain;
+            let (stress, energy) = strained(section, gradient);
+            assert!((stress - gradient * along).norm() < 1e-5 * along * strain, "{stress}");
+            assert!((energy / (0.5 * along * strain * strain) - 1.0).abs() < 1e-5);
+        }
+        for (row, column) in [(0, 1), (0, 2), (1, 2)] {
+            let mut gradient = Mat3::zeros();
+            gradient[(row, column)] = strain;
+            let (stress, energy) = strained(section, gradient);
+            let expected = (gradient + gradient.transpose()) * across;
+            assert!((stress - expected).norm() < 1e-5 * across * strain, "{stress} {expected}");
+            assert!((energy / (0.5 * across * strain * strain) - 1.0).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn bonds_join_the_nearest_images_wherever_their_particles_stand() {
+        let (mut particles, mut bonds, cell) = lattice(BeamSection::new(3e9, 0.6).unwrap());
+        assert!((0..bonds.len()).all(|bond| (bonds.length(bond) - APART).abs() < 1e-12));
+        let way = Vec3::new(17.3, -40.1, 8.9);
+        particles.position.iter_mut().for_each(|x| *x += way);
+        bonds.set_cell(&cell);
+        particles.clear_forces();
+        bonds.add_forces(&mut particles);
+        let rounding = 3e9 * APART * 1e-14;
+        assert!(particles.force.iter().chain(&particles.moment).all(|force| force.norm() < 100.0 * rounding));
+        let narrow = bonds.gap(0, &particles);
+        assert!((narrow.norm() - APART).abs() < 1e-12);
+    }
+}
