@@ -190,7 +190,7 @@ fn what_a_bonded_body_in_a_periodic_box_cannot_be_is_refused_by_name() {
     refused(end, "wall_stiffening = 0.1", "", &["wall_stiffening and no walls"]);
     let at_walls = "fracture = { criterion_strength = \"67.7 MPa\", at_walls = true }";
     refused(end, "", at_walls, &["at_walls is true without walls"]);
-    let statics = "[solver]\nkind = \"static\"\nsteps = 4";
+    let statics = "[solver]\nkind = \"static\"\nend = \"transit\"";
     refused(statics, "", "", &["is not explicit, and the box is periodic"]);
     let deforms = format!("strain_rate = {{ xy = \"1 1/s\" }}\n[damping]\nlocal = 0.1\n{end}");
     refused(&deforms, "", "", &["damping would act on its mean flow"]);
