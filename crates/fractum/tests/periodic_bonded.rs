@@ -174,6 +174,54 @@ fn a_body_that_parts_and_closes_again_has_the_same_bits_and_keeps_its_balance() 
     assert_eq!((&resumed["state_hash"], &resumed["energy"]), (&one["state_hash"], &one["energy"]));
 }
 
+/// Particles of a file on a cubic grid through all sides, with given beams; the corner of the box is within one of them.
+const GRID: &str = r#"fractum = 1
+[materials.grid]
+density = "2500 kg/m^3"
+young_modulus = "19.6 GPa"
+poisson_ratio = 0
+bonds = { radius_ratio = 0.5, young_modulus = "100 GPa", coordination = 6, convention = "all" }
+[[bodies]]
+name = "grid"
+kind = "bonded"
+material = "grid"
+file = "grid.csv"
+unit = "mm"
+bond_gap = "0.1 mm"
+[periodic]
+size = ["5 mm", "5 mm", "5 mm"]
+strain_rate = { AXIS = "10 1/s" }
+[solver]
+end = "10 us"
+[[probes]]
+name = "stress"
+periodic_box = "stress_AXIS"
+[[probes]]
+name = "strain"
+periodic_box = "strain_AXIS"
+[[probes]]
+name = "bonds"
+periodic_box = "coordination"
+"#;
+
+#[test]
+fn a_grid_from_a_file_has_the_stiffness_of_its_beams_along_every_axis() {
+    for axis in ["xx", "yy", "zz"] {
+        let place = Workplace::new(&GRID.replace("AXIS", axis));
+        let rows = (0..125).map(|n| [n % 5, n / 5 % 5, n / 25]).map(|[x, y, z]| format!("{x},{y},{z},0.5\n"));
+        fs::write(place.path("grid.csv"), format!("x,y,z,radius\n{}", rows.collect::<String>())).unwrap();
+        let summary = run(&place, "out", "1");
+        let last = |name: &str| summary["probes"][name]["final"].as_f64().unwrap();
+        assert_eq!(last("bonds"), 6.0);
+        // One beam of radius 0.25 mm for each square millimetre; the stress is that of a step before the strain.
+        let young = 100e9 * std::f64::consts::PI * 0.25 * 0.25;
+        let step = summary["time"]["dt"].as_f64().unwrap() * 10.0;
+        let strain = last("strain") - step;
+        assert!((last("stress") / (young * strain) - 1.0).abs() < 5e-4, "{axis}: {} {strain}", last("stress"));
+        assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+    }
+}
+
 fn refused(more: &str, velocity: &str, fracture: &str, words: &[&str]) {
     let place = glass(more, velocity, fracture);
     let ended: Ended = place.fractum(&["check", "case.toml"]);

@@ -90,3 +90,42 @@ impl Bonded {
         Some(all)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use fractum_dem::{BeamSection, Clumps};
+
+    use super::*;
+    use crate::bonded::BondedPart;
+
+    #[test]
+    fn a_piece_that_a_side_divides_is_put_together_again() {
+        // A row of five particles through the side at x = 0, bonded from the third on: 2, 3 and 4, 0 are two pieces, and 1 is alone.
+        let size = 5.0;
+        let edges = Mat3::identity() * size;
+        let velocity = Mat3::new(0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+        let cell = PeriodicCell { corner: Vec3::zeros(), edges, velocity, repeats: [true; 3] };
+        let position: Vec<Vec3> = (0..5).map(|i| Vec3::new(f64::from(i) + 0.5, 2.0, 2.0)).collect();
+        let part = BondedPart {
+            name: "row".into(),
+            particles: Particles::at_rest(position, vec![0.5; 5], 5.0).unwrap(),
+            pairs: vec![[2, 3], [0, 4]],
+            law: BeamSection::new(1e9, 0.3).unwrap().into(),
+            shares: Vec::new(),
+            density: 1.0,
+            fraction: 0.64,
+            fracture: None,
+            clumps: Clumps::default(),
+        };
+        let bonded = Bonded::within(vec![part], Some(&cell)).unwrap();
+        let found = bonded.fragments();
+        let members: Vec<&[u32]> = found.iter().map(|piece| &piece.nodes[..]).collect();
+        assert_eq!(members, [&[0, 4][..], &[1], &[2, 3]]);
+        // The second particle stands where the image is that the first one is bonded to, and moves with it.
+        assert_eq!(found[0].bounds, [Vec3::new(-1.0, 1.5, 1.5), Vec3::new(1.0, 2.5, 2.5)]);
+        assert_eq!((found[0].centroid, found[0].velocity), (Vec3::new(0.0, 2.0, 2.0), Vec3::new(-0.25, 0.0, 0.0)));
+        assert_eq!(found[2].centroid, Vec3::new(3.0, 2.0, 2.0));
+        assert_eq!(bonded.bodies()[0].bonds.length(0), 1.0);
+        assert_eq!(bonded.narrowest_box(), 2.0);
+    }
+}
