@@ -12,7 +12,7 @@ use fractum_dem::Particles;
 use fractum_math::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::bonded::Bonded;
+use crate::bonded::{Bonded, set_cell_velocity, sums_through_box};
 use crate::clock::ThisStep;
 use crate::contacts::Contacts;
 use crate::time_function::TimeFunction;
@@ -132,7 +132,7 @@ impl PeriodicBox {
         if !deforms && !measure {
             return Ok(());
         }
-        let [of_bonds, virial_of_bonds] = bonded.sums_through_box();
+        let [of_bonds, virial_of_bonds] = sums_through_box(bonded);
         let [through, virial] = contacts.sums_through_box(&bonded.particles).unwrap_or_default();
         let (through, virial) = (through + of_bonds, virial + virial_of_bonds);
         let particles = &mut bonded.particles;
@@ -167,7 +167,7 @@ impl PeriodicBox {
             state.cell.edges += after * dt_after;
         }
         contacts.set_cell(&state.cell);
-        bonded.set_cell_velocity(&after);
+        set_cell_velocity(bonded, &after);
         let (narrowest, needed) = (state.cell.narrowest(), contacts.narrowest_box().max(*bonded_needs));
         // A box that is no number is left to the balance.
         if narrowest < needed { Err([narrowest, needed]) } else { Ok(()) }

@@ -4,6 +4,7 @@ use fractum_contact::PeriodicCell;
 use fractum_dem::Particles;
 use fractum_math::{Mat3, Vec3, sphere_volume};
 
+use crate::bonded::{narrowest_box, set_cell, touching_faces};
 use crate::clock::ThisStep;
 use crate::error::StepError;
 use crate::periodic::{BoxStrain, MeanMotion, PeriodicBox, PeriodicState, gradient};
@@ -39,7 +40,7 @@ pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain
         stress: Mat3::zeros(),
         kinetic_stress: Mat3::zeros(),
     };
-    let bonded_needs = scene.bonded.narrowest_box();
+    let bonded_needs = narrowest_box(&scene.bonded);
     scene.optional.periodic = Some(Box::new(PeriodicBox { strain, state, bonded_needs }));
     scene
 }
@@ -81,7 +82,7 @@ pub fn measure_periodic_box(scene: &Scene, measure: BoxMeasure) -> f64 {
         }
         BoxMeasure::Coordination => {
             let (bonds, broken) = scene.bonded.bond_counts();
-            let touching = scene.contacts.touching_among() + scene.bonded.touching_faces() + bonds - broken;
+            let touching = scene.contacts.touching_among() + touching_faces(&scene.bonded) + bonds - broken;
             2.0 * touching as f64 / scene.bonded.particles.len() as f64
         }
         BoxMeasure::Volume => cell.volume(),
@@ -106,7 +107,7 @@ pub(crate) fn start_box(scene: &mut Scene, step: &ThisStep) {
 /// Gives the bonds the box of tⁿ, before their forces are found; it stays theirs until those of the next step.
 pub(crate) fn put_bonds_in_box(scene: &mut Scene) {
     if let Some(own) = &scene.optional.periodic {
-        scene.bonded.set_cell(&own.state.cell);
+        set_cell(&mut scene.bonded, &own.state.cell);
     }
 }
 

@@ -18,7 +18,7 @@ transit = "side*sqrt(rho/E)"
 density = "rho"
 young_modulus = "E"
 poisson_ratio = "nu"
-bonds = { radius_ratio = 0.4418, young_modulus = "610.8 GPa", coordination = 8, convention = "interior" }
+BEAMS
 FRACTURE
 [[bodies]]
 name = "cube"
@@ -60,8 +60,13 @@ name = "momentum"
 momentum = { along = "x" }
 "#;
 
+/// Beams that give it the moduli of glass.
+const BEAMS: &str =
+    r#"bonds = { radius_ratio = 0.4418, young_modulus = "610.8 GPa", coordination = 8, convention = "interior" }"#;
+
 fn glass(more: &str, velocity: &str, fracture: &str) -> Workplace {
-    let case = GLASS.replace("MORE", more).replace("VELOCITY", velocity).replace("FRACTURE", fracture);
+    let case =
+        GLASS.replace("MORE", more).replace("BEAMS", BEAMS).replace("VELOCITY", velocity).replace("FRACTURE", fracture);
     Workplace::new(&case)
 }
 
@@ -240,10 +245,16 @@ fn what_a_bonded_body_in_a_periodic_box_cannot_be_is_refused_by_name() {
     refused(end, "", at_walls, &["at_walls is true without walls"]);
     let statics = "[solver]\nkind = \"static\"\nend = \"transit\"";
     refused(statics, "", "", &["is not explicit, and the box is periodic"]);
+    let held = format!("{end}\n[[supports]]\ngroup = \"cube.x-\"\nfix = \"x\"");
+    refused(&held, "", "", &["a set of particles of \"cube\": cube;", "without walls in its periodic box"]);
+    let nonlocal = GLASS.replace("seed = 1", "seed = 1\nbond = \"local-nonlocal\"").replace("MORE", end);
+    let nonlocal = nonlocal.replace("VELOCITY", "").replace("FRACTURE", "").replace("BEAMS", "");
+    let ended = Workplace::new(&nonlocal).fractum(&["check", "case.toml"]);
+    assert!(ended.code == Some(1) && ended.stderr.contains("mean strain of particles"), "{}", ended.stderr);
     let deforms = format!("strain_rate = {{ xy = \"1 1/s\" }}\n[damping]\nlocal = 0.1\n{end}");
     refused(&deforms, "", "", &["damping would act on its mean flow"]);
     let moved = GLASS.replacen("point = [\"-side/2\", \"-side/2\", \"-side/2\"]", "point = [0, 0, 0]", 1);
-    let moved = moved.replace("MORE", end).replace("VELOCITY", "").replace("FRACTURE", "");
+    let moved = moved.replace("MORE", end).replace("BEAMS", BEAMS).replace("VELOCITY", "").replace("FRACTURE", "");
     let ended = Workplace::new(&moved).fractum(&["check", "case.toml"]);
     assert!(ended.code == Some(1) && ended.stderr.contains("a bonded body fills it"), "{}", ended.stderr);
 }

@@ -2,7 +2,7 @@
 
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{BoxServo, BoxStrain, PeriodicCell, Scene, periodic_cell, with_periodic_box};
+use fractum_scene::{BoxServo, BoxStrain, PeriodicCell, Scene, narrowest_box, periodic_cell, with_periodic_box};
 
 use super::{Context, function};
 use crate::measure::ContactForce;
@@ -148,11 +148,11 @@ fn refused_of_bonded<'c>(
     let stiffens = bonded.wall_stiffening > 0.0;
     refuse(stiffens, place, format!("= \"{name}\" has wall_stiffening and no walls"), "no wall_stiffening");
     let beside_mean = bonded.law == BondLawKind::LocalNonlocal;
-    let laws = "bond_law = \"cohesive-beam\" or \"local\"";
+    let laws = "bond = \"cohesive-beam\" or \"local\"";
     refuse(beside_mean, place, format!("= \"{name}\": its bonds know the mean strain of particles"), laws);
     let viscous = bonded.law == BondLawKind::Local
         && material.interfaces.as_ref().is_some_and(|own| own.value.law.damping_ratio > 0.0);
-    let interfaces = "no damping_ratio in the interfaces of its material";
+    let interfaces = "no damping_ratio in materials.NAME.interface";
     refuse(viscous, place, format!("= \"{name}\": its bonds are viscous"), interfaces);
     let at_walls = material.fracture.as_ref().filter(|own| own.value.strength.at_walls);
     if let Some(own) = at_walls {
@@ -197,7 +197,7 @@ pub(super) fn cell(case: &Case) -> Option<PeriodicCell> {
 /// The same scene, with its contacts, in the box of the case.
 pub(super) fn with_box(context: &mut Context<'_>, scene: Scene, cell: PeriodicCell) -> Scene {
     let Some(periodic) = &context.case.periodic else { return scene };
-    let needed = scene.contacts.narrowest_box().max(scene.bonded.narrowest_box());
+    let needed = scene.contacts.narrowest_box().max(narrowest_box(&scene.bonded));
     check_size(context, periodic, needed, &cell);
     let rates = periodic.rates.iter().map(|(at, rate)| (*at, function(&rate.value))).collect();
     let servos = periodic.servo.iter().flat_map(|servo| {

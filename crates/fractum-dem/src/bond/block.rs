@@ -6,9 +6,9 @@ use fractum_kernels::bond::{BondEnergy, BondLanes, BondLaw, ForceLanes};
 use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot};
 use fractum_math::{Rotation, Vec3, widest};
 
+use super::images::BlockThroughBox;
 use super::loads::{LoadLanes, load_sizes};
 use super::mean_strain::MeanStrain;
-use super::through_box::BlockThroughBox;
 
 /// What a pass over the bonds keeps beside forces: nothing, sums of virials, or of bounds of them, or what every bond bears.
 pub(super) const NOTHING: u8 = 0;

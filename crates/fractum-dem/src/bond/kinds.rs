@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::graph::BondGraph;
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
+use super::through_box;
 use crate::DemError;
 use crate::particles::{ParticleSubdomain, Particles};
 
@@ -148,29 +149,30 @@ impl Bonds {
         each!(self, network => network.is_live(bond))
     }
 
-    /// See [`BondNetwork::set_cell`].
+    /// Takes the box as it is now; without effect on bonds that are in none.
     pub fn set_cell(&mut self, cell: &PeriodicCell) {
-        each!(self, network => network.set_cell(cell));
+        each!(self, network => through_box::set_cell(network, cell));
     }
 
-    /// See [`BondNetwork::through_box`].
+    /// The box in which the bonds repeat, with the images of the second particles that they join the first ones to.
     pub fn through_box(&self) -> Option<(&PeriodicCell, &[Image])> {
-        each!(self, network => network.through_box())
+        each!(self, network => through_box::through_box(network))
     }
 
-    /// See [`BondNetwork::gap`].
+    /// From the first particle of a bond to the second, or to the image that it is bonded to [m].
     pub fn gap(&self, bond: usize, particles: &Particles) -> Vec3 {
-        each!(self, network => network.gap(bond, particles))
+        each!(self, network => through_box::gap(network, bond, particles))
     }
 
-    /// See [`BondNetwork::ends`].
+    /// The ends of a bond by places in the undeformed body, the second one where the image is that it joins [m].
     pub fn ends(&self, bond: usize, reference: &[Vec3]) -> [Vec3; 2] {
-        each!(self, network => network.ends(bond, reference))
+        each!(self, network => through_box::ends(network, bond, reference))
     }
 
-    /// See [`BondNetwork::sums_through_box`].
+    /// Sums over the bonds at the last pass, with forces f on the second particles [N]: Σ f ⊗ n with the edges n of the box between a
+    /// particle and its image [N], and Σ f ⊗ r with the gaps r [N m]; none without such a box.
     pub fn sums_through_box(&self) -> Option<[Mat3; 2]> {
-        each!(self, network => network.sums_through_box())
+        each!(self, network => through_box::sums(network))
     }
 
     /// Distance of the particles of a bond without load [m].

@@ -3,6 +3,7 @@
 mod block;
 mod distributed;
 mod graph;
+mod images;
 mod kept_loads;
 mod kinds;
 mod loads;

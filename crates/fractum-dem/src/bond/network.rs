@@ -10,9 +10,9 @@ use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
 use super::graph::{BondGraph, check_pairs, check_shares};
+use super::images::{BlockThroughBox, ThroughBox};
 use super::mean_strain::{MeanStrain, Separating};
 use super::subdomain::BondSubdomain;
-use super::through_box::ThroughBox;
 use crate::DemError;
 use crate::particles::{Particles, SHARED};
 
@@ -128,24 +128,14 @@ impl<L: BondLaw> BondNetwork<L> {
             None => None,
         };
         let separating = Separating::default();
-        let mut network = BondNetwork {
-            law,
-            pairs,
-            axis,
-            length,
-            own,
-            live,
-            blocks,
-            index,
-            mean,
-            separating,
-            part: None,
-            through: None,
-        };
-        if let Some(through) = through {
-            network.put_through(through);
+        let through = through.map(Box::new);
+        if let Some(through) = &through {
+            for block in &mut blocks {
+                let (first, count) = (block.first_bond as usize, block.bonds);
+                block.through = Some(Box::new(BlockThroughBox::new(through, block.groups.len(), first, count)));
+            }
         }
-        Ok(network)
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating, part: None, through })
     }
 
     /// Number of bonds, broken ones included.
@@ -379,13 +369,12 @@ impl<L: BondLaw> BondNetwork<L> {
     #[inline]
     pub(super) fn pair(&self, bond: usize, particles: &Particles) -> BondedPair {
         let ends = self.pairs[bond].map(|i| i as usize);
-        let pair = BondedPair {
-            position: ends.map(|i| particles.position[i]),
-            rotation: ends.map(|i| particles.orientation[i]),
-            axis: self.axis[bond],
-            length: self.length[bond],
-        };
-        self.with_image(bond, pair)
+        let mut position = ends.map(|i| particles.position[i]);
+        if let Some(through) = &self.through {
+            position[1] += through.offset(bond);
+        }
+        let rotation = ends.map(|i| particles.orientation[i]);
+        BondedPair { position, rotation, axis: self.axis[bond], length: self.length[bond] }
     }
 
     /// Distance of the particles of a bond without load [m].
@@ -437,7 +426,8 @@ impl<L: BondLaw> BondNetwork<L> {
         let mut own = vec![Matrix6::<f64>::zeros(); particles.len()];
         for bond in (0..self.len()).filter(|&b| self.live[b]) {
             let [i, j] = self.pairs[bond].map(|i| i as usize);
-            let n = self.gap(bond, particles).normalize();
+            let [first, second] = self.pair(bond, particles).position;
+            let n = (second - first).normalize();
             let (length, stiffness) = (self.length[bond], self.law.stiffness(self.length[bond], &self.own[bond]));
             add_stiffness(&mut own[i], &n, length, &stiffness);
             add_stiffness(&mut own[j], &-n, length, &stiffness);

@@ -54,7 +54,7 @@ pub(super) struct FractureThroughBox {
     pub(super) cell: PeriodicCell,
     /// Image of the second particle of each bond that the first was bonded to.
     pub(super) images: Vec<Image>,
-    /// Sums of the forces of faces at the last step, as [`BondNetwork::sums_through_box`](crate::BondNetwork::sums_through_box) has them.
+    /// Sums of the forces of faces at the last step, as [`Bonds::sums_through_box`] has them.
     pub(super) sums: [Mat3; 2],
 }
 
@@ -270,7 +270,7 @@ impl Fracture {
         self.through.iter_mut().for_each(|through| through.cell = *cell);
     }
 
-    /// Sums over the faces that touched at the last step, as [`BondNetwork::sums_through_box`](crate::BondNetwork::sums_through_box) has them.
+    /// Sums over the faces that touched at the last step, as [`Bonds::sums_through_box`] has them.
     pub fn sums_through_box(&self) -> Option<[Mat3; 2]> {
         self.through.as_ref().map(|through| through.sums)
     }

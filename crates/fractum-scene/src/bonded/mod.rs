@@ -29,6 +29,8 @@ use momentum::{energy_of, viscous_power};
 pub use plan::BondFracture;
 use points::ParticlePoints;
 pub use state::BondedState;
+pub use through_box::narrowest_box;
+pub(crate) use through_box::{set_cell, set_cell_velocity, sums_through_box, touching_faces};
 
 /// Steps between two searches for particles of a broken body that meet others of it.
 const STEPS_BETWEEN_SEARCHES: u64 = 20;

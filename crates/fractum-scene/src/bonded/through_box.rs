@@ -6,89 +6,87 @@ use fractum_math::{Mat3, Vec3, connected};
 
 use super::{Bonded, BondedBody};
 
-impl Bonded {
-    /// Takes the box as it is now.
-    pub(crate) fn set_cell(&mut self, cell: &PeriodicCell) {
-        for BondedBody { bonds, fracture, .. } in &mut self.bodies {
-            bonds.set_cell(cell);
-            fracture.iter_mut().for_each(|fracture| fracture.set_cell(cell));
+/// Takes the box as it is now.
+pub(crate) fn set_cell(bonded: &mut Bonded, cell: &PeriodicCell) {
+    for BondedBody { bonds, fracture, .. } in &mut bonded.bodies {
+        bonds.set_cell(cell);
+        fracture.iter_mut().for_each(|fracture| fracture.set_cell(cell));
+    }
+}
+
+/// Takes the velocity of the edges of the half step that begins, while the edges are those of the forces.
+pub(crate) fn set_cell_velocity(bonded: &mut Bonded, velocity: &Mat3) {
+    for BondedBody { bonds, fracture, .. } in &mut bonded.bodies {
+        let Some((cell, _)) = bonds.through_box() else { continue };
+        let cell = PeriodicCell { velocity: *velocity, ..*cell };
+        bonds.set_cell(&cell);
+        fracture.iter_mut().for_each(|fracture| fracture.set_cell(&cell));
+    }
+}
+
+/// Sums over bonds and crack faces, see [`fractum_dem::Bonds::sums_through_box`]; zero where there are none in such a box.
+pub(crate) fn sums_through_box(bonded: &Bonded) -> [Mat3; 2] {
+    let of_bonds = bonded.bodies.iter().filter_map(|body| body.bonds.sums_through_box());
+    let of_faces = bonded.bodies.iter().filter_map(|body| body.fracture.as_ref()?.sums_through_box());
+    of_bonds.chain(of_faces).fold([Mat3::zeros(); 2], |[a, b], [c, d]| [a + c, b + d])
+}
+
+/// Pairs of particles of bonded bodies that touch where no bond joins them.
+pub(crate) fn touching_faces(bonded: &Bonded) -> usize {
+    let of = |body: &BondedBody| body.fracture.as_ref().map_or(0, |own| own.touching(&bonded.particles).count());
+    bonded.bodies.iter().map(of).sum()
+}
+
+/// Least distance of opposite sides of a box that repeats in which bonded particles meet one image of another only [m].
+pub fn narrowest_box(bonded: &Bonded) -> f64 {
+    let of = |body: &BondedBody| {
+        let longest = (0..body.bonds.len()).map(|bond| body.bonds.length(bond)).fold(0.0, f64::max);
+        let strangers =
+            if body.can_break() { Fracture::reach(&bonded.particles.radius[body.range.clone()]) } else { 0.0 };
+        2.0 * longest.max(strangers)
+    };
+    bonded.bodies.iter().filter(|body| !body.bonds.is_empty()).map(of).fold(0.0, f64::max)
+}
+
+/// The particles with the pieces put together that sides of a box that repeats divide; as they stand without such a box. A piece that
+/// goes on through the box for ever stays where its first particle is.
+pub(super) fn whole_pieces(bonded: &Bonded) -> Option<Particles> {
+    let cell = bonded.bodies.iter().find_map(|body| body.bonds.through_box())?.0;
+    let of_body = |body: &'_ BondedBody| {
+        let images = body.bonds.through_box().map_or_else(Vec::new, |(_, images)| images.to_vec());
+        let held = (0..body.bonds.len()).filter(|&bond| body.is_joined(bond));
+        held.map(|bond| (body.bonds.pairs()[bond], images[bond])).collect::<Vec<_>>()
+    };
+    let bonds: Vec<([u32; 2], Image)> = bonded.bodies.iter().flat_map(of_body).collect();
+    let within = bonds.iter().filter(|(_, image)| *image == [0; 3]).map(|(pair, _)| *pair);
+    let part = connected(bonded.particles.len(), within);
+    let mut image_of: Vec<Option<Image>> = vec![None; part.len()];
+    for start in 0..part.len() {
+        if part[start] as usize != start || image_of[start].is_some() {
+            continue;
         }
-    }
-
-    /// Takes the velocity of the edges of the half step that begins, while the edges are those of the forces.
-    pub(crate) fn set_cell_velocity(&mut self, velocity: &Mat3) {
-        for BondedBody { bonds, fracture, .. } in &mut self.bodies {
-            let Some((cell, _)) = bonds.through_box() else { continue };
-            let cell = PeriodicCell { velocity: *velocity, ..*cell };
-            bonds.set_cell(&cell);
-            fracture.iter_mut().for_each(|fracture| fracture.set_cell(&cell));
-        }
-    }
-
-    /// Sums over bonds and crack faces, see [`fractum_dem::BondNetwork::sums_through_box`]; zero where there are none in such a box.
-    pub(crate) fn sums_through_box(&self) -> [Mat3; 2] {
-        let of_bonds = self.bodies.iter().filter_map(|body| body.bonds.sums_through_box());
-        let of_faces = self.bodies.iter().filter_map(|body| body.fracture.as_ref()?.sums_through_box());
-        of_bonds.chain(of_faces).fold([Mat3::zeros(); 2], |[a, b], [c, d]| [a + c, b + d])
-    }
-
-    /// Pairs of particles of bonded bodies that touch where no bond joins them.
-    pub(crate) fn touching_faces(&self) -> usize {
-        let of = |body: &BondedBody| body.fracture.as_ref().map_or(0, |own| own.touching(&self.particles).count());
-        self.bodies.iter().map(of).sum()
-    }
-
-    /// Least distance of opposite sides of a box that repeats in which bonded particles meet one image of another only [m].
-    pub fn narrowest_box(&self) -> f64 {
-        let of = |body: &BondedBody| {
-            let longest = (0..body.bonds.len()).map(|bond| body.bonds.length(bond)).fold(0.0, f64::max);
-            let strangers =
-                if body.can_break() { Fracture::reach(&self.particles.radius[body.range.clone()]) } else { 0.0 };
-            2.0 * longest.max(strangers)
-        };
-        self.bodies.iter().filter(|body| !body.bonds.is_empty()).map(of).fold(0.0, f64::max)
-    }
-
-    /// The particles with the pieces put together that sides of a box that repeats divide; as they stand without such a box. A piece that
-    /// goes on through the box for ever stays where its first particle is.
-    pub(super) fn whole_pieces(&self) -> Option<Particles> {
-        let cell = self.bodies.iter().find_map(|body| body.bonds.through_box())?.0;
-        let of_body = |body: &'_ BondedBody| {
-            let images = body.bonds.through_box().map_or_else(Vec::new, |(_, images)| images.to_vec());
-            let held = (0..body.bonds.len()).filter(|&bond| body.is_joined(bond));
-            held.map(|bond| (body.bonds.pairs()[bond], images[bond])).collect::<Vec<_>>()
-        };
-        let bonds: Vec<([u32; 2], Image)> = self.bodies.iter().flat_map(of_body).collect();
-        let within = bonds.iter().filter(|(_, image)| *image == [0; 3]).map(|(pair, _)| *pair);
-        let part = connected(self.particles.len(), within);
-        let mut image_of: Vec<Option<Image>> = vec![None; part.len()];
-        for start in 0..part.len() {
-            if part[start] as usize != start || image_of[start].is_some() {
-                continue;
-            }
-            image_of[start] = Some([0; 3]);
-            let mut grows = true;
-            while grows {
-                grows = false;
-                for (pair, image) in &bonds {
-                    let [first, second] = pair.map(|i| part[i as usize] as usize);
-                    for (from, to, sign) in [(first, second, 1), (second, first, -1)] {
-                        if let (Some(known), None) = (image_of[from], image_of[to]) {
-                            image_of[to] = Some(std::array::from_fn(|k| known[k] + sign * image[k]));
-                            grows = true;
-                        }
+        image_of[start] = Some([0; 3]);
+        let mut grows = true;
+        while grows {
+            grows = false;
+            for (pair, image) in &bonds {
+                let [first, second] = pair.map(|i| part[i as usize] as usize);
+                for (from, to, sign) in [(first, second, 1), (second, first, -1)] {
+                    if let (Some(known), None) = (image_of[from], image_of[to]) {
+                        image_of[to] = Some(std::array::from_fn(|k| known[k] + sign * image[k]));
+                        grows = true;
                     }
                 }
             }
         }
-        let mut all = self.particles.clone();
-        for (i, part) in part.iter().enumerate() {
-            let image = image_of[*part as usize].unwrap_or_default();
-            all.position[i] += cell.offset(&image);
-            all.velocity[i] += Vec3::from(cell.velocity_of(&image));
-        }
-        Some(all)
     }
+    let mut all = bonded.particles.clone();
+    for (i, part) in part.iter().enumerate() {
+        let image = image_of[*part as usize].unwrap_or_default();
+        all.position[i] += cell.offset(&image);
+        all.velocity[i] += cell.velocity_of(&image);
+    }
+    Some(all)
 }
 
 #[cfg(test)]
@@ -123,9 +121,9 @@ mod tests {
         assert_eq!(members, [&[0, 4][..], &[1], &[2, 3]]);
         // The second particle stands where the image is that the first one is bonded to, and moves with it.
         assert_eq!(found[0].bounds, [Vec3::new(-1.0, 1.5, 1.5), Vec3::new(1.0, 2.5, 2.5)]);
-        assert_eq!((found[0].centroid, found[0].velocity), (Vec3::new(0.0, 2.0, 2.0), Vec3::new(-0.25, 0.0, 0.0)));
+        assert_eq!((found[0].centroid, found[0].velocity), (Vec3::new(0.0, 2.0, 2.0), Vec3::new(-0.05, 0.0, 0.0)));
         assert_eq!(found[2].centroid, Vec3::new(3.0, 2.0, 2.0));
         assert_eq!(bonded.bodies()[0].bonds.length(0), 1.0);
-        assert_eq!(bonded.narrowest_box(), 2.0);
+        assert_eq!(narrowest_box(&bonded), 2.0);
     }
 }
