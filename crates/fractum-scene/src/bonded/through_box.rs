@@ -2,7 +2,7 @@
 
 use fractum_contact::{Image, PeriodicCell};
 use fractum_dem::{Fracture, Particles};
-use fractum_math::{Mat3, Vec3, connected};
+use fractum_math::{Mat3, connected};
 
 use super::{Bonded, BondedBody};
 
@@ -92,6 +92,7 @@ pub(super) fn whole_pieces(bonded: &Bonded) -> Option<Particles> {
 #[cfg(test)]
 mod tests {
     use fractum_dem::{BeamSection, Clumps};
+    use fractum_math::Vec3;
 
     use super::*;
     use crate::bonded::BondedPart;
