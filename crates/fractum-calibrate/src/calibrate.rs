@@ -18,6 +18,9 @@ pub struct Request {
     pub poisson_ratio: f64,
     /// Tensile strength [Pa] and the criterion that shall give it, when fracture is wanted.
     pub tensile_strength: Option<(f64, StrengthCriterion)>,
+    /// Whether the criterion takes the stress of particles at walls there, see [`Sample::read_at_walls`].
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub at_walls: bool,
     /// Coordination; chosen when absent.
     pub coordination: Option<f64>,
     /// How the coordination is counted.
@@ -39,6 +42,7 @@ impl Request {
             young_modulus,
             poisson_ratio,
             tensile_strength: None,
+            at_walls: false,
             coordination: None,
             convention: Convention::Interior,
             wall_stiffening: 0.0,
@@ -117,7 +121,8 @@ pub fn calibrate(request: &Request) -> Result<Calibration, CalibrateError> {
     let start = proposed.map_or(0.4, |m| m.radius_ratio);
     let cube = |seed: u64| -> Result<Sample, CalibrateError> {
         let packing = pack(&PackSpec::new(Domain::cuboid(1e-3, 1e-3, 1e-3), request.particles, seed))?;
-        Sample::new(packing, coordination, request.convention)?.stiffen_walls(request.wall_stiffening)
+        let sample = Sample::new(packing, coordination, request.convention)?.stiffen_walls(request.wall_stiffening)?;
+        Ok(if request.at_walls { sample.read_at_walls() } else { sample })
     };
     let mut inverted = Vec::new();
     let mut first = None;

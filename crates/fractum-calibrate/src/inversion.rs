@@ -46,12 +46,20 @@ pub fn invert(
     check_material(young_modulus, poisson_ratio)?;
     let axes = tested_axes(sample);
     let tolerance = Tolerance::default();
-    let mut warm: Vec<Option<Equilibrium>> = vec![None; 3];
+    let mut warm: [Option<Equilibrium>; 6] = Default::default();
     let mut solves = 0;
     let mut test = |sample: &mut Sample, log: f64, axes: &[usize]| -> Result<(f64, f64, f64), CalibrateError> {
         sample.set_micro(Micro { radius_ratio: exp(log), young_modulus: 1.0 })?;
         let (mut young, mut poisson) = (Vec::new(), 0.0);
-        for &axis in axes {
+        if sample.packing.domain.period().is_some() {
+            let found = lab::uniaxial(&lab::stiffness(sample, 3, &mut warm, tolerance)?);
+            for &axis in axes {
+                young.push(found[axis].0);
+                poisson += found[axis].1 / axes.len() as f64;
+            }
+            solves += 3;
+        }
+        for &axis in axes.iter().filter(|_| sample.packing.domain.period().is_none()) {
             let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
             warm[axis] = Some(rest);
             young.push(tension.young_modulus);
@@ -128,8 +136,11 @@ fn out_of_reach(sample: &Sample, asked: f64, [lowest, highest]: [f64; 2]) -> Cal
     CalibrateError::PoissonRange { asked, coordination, convention, thin, thick, lowest, highest }
 }
 
-/// Axes of a box along which it is about as long as it gets, x of a cylinder.
+/// Axes of a box along which it is about as long as it gets, x of a cylinder, all of a box without walls.
 fn tested_axes(sample: &Sample) -> Vec<usize> {
+    if sample.packing.domain.period().is_some() {
+        return vec![0, 1, 2];
+    }
     let Some(extents) = sample.box_extents() else { return vec![0] };
     (0..3).filter(|&axis| extents[axis] > LONG * extents.max()).collect()
 }

@@ -63,7 +63,7 @@ pub struct BondedBody {
 
 /// Bonds a packing, calibrates the beams and gives the particles their mass.
 ///
-/// Boxes and cylinders are calibrated on the very packing; other shapes on a box of 10,000 particles of the same
+/// Boxes, with walls or repeating, and cylinders are calibrated on the very packing; other shapes on a box of 10,000 particles of the same
 /// dispersion and convention, since a tension test needs two faces.
 ///
 /// # Errors
@@ -83,10 +83,11 @@ pub fn prepare_sample(sample: Sample, material: &BondedMaterial) -> Result<Bonde
         return Err(CalibrateError::Material { what: "density", value: material.density, expected });
     }
     let mut sample = sample.stiffen_walls(material.wall_stiffening)?;
-    let has_faces = sample.box_extents().is_some() || sample.cylinder_extents().is_some();
+    let repeats = sample.packing.domain.period().is_some();
+    let may_be_tested = repeats || sample.box_extents().is_some() || sample.cylinder_extents().is_some();
     let beams = match material.beams {
         Some(beams) => beams,
-        None if has_faces => {
+        None if may_be_tested => {
             let law = crate::laws::stored(material.convention)?.micro(young, poisson, material.coordination);
             let found = invert(&mut sample, young, poisson, law.map_or(0.4, |m| m.radius_ratio))?;
             Beams::calibrated(&found, true)

@@ -54,7 +54,7 @@ impl Sample {
     pub fn of_network(packing: Packing, network: BondNetwork, convention: Convention) -> Result<Self, CalibrateError> {
         let mean_radius = packing.mean_radius();
         let section = BeamSection::new(1.0, 0.5 * mean_radius).map_err(DemError::from)?;
-        let lattice = Lattice::new(&packing.position, &network.pairs, section, mean_radius)?;
+        let lattice = lattice_of(&packing, &network, &[], section)?;
         let fraction = interior_fraction(&packing).unwrap_or(RANDOM_CLOSE);
         Ok(Sample {
             packing,
@@ -79,13 +79,12 @@ impl Sample {
             return Err(CalibrateError::Material { what: "stiffening of wall bonds", value: by, expected });
         }
         if by > 0.0 {
-            let Sample { packing, network, lattice, shares, mean_radius, .. } = &mut self;
+            let Sample { packing, network, lattice, shares, .. } = &mut self;
             let mut share = vec![0.0; packing.len()];
             packing.walls.iter().flat_map(|(_, set)| set).for_each(|&i| share[i as usize] = by);
             let own = |pair: &[u32; 2]| 1.0 + share[pair[0] as usize] + share[pair[1] as usize];
             *shares = network.pairs.iter().map(own).collect();
-            *lattice =
-                Lattice::with_shares(&packing.position, &network.pairs, shares, lattice.section(), *mean_radius)?;
+            *lattice = lattice_of(packing, network, shares, lattice.section())?;
         }
         Ok(self)
     }
@@ -147,4 +146,15 @@ impl Sample {
         let distance = |&i: &u32| (self.packing.position[i as usize] - from).component_mul(&mask).norm();
         Some(set.iter().map(distance).sum::<f64>() / set.len() as f64)
     }
+}
+
+fn lattice_of(
+    packing: &Packing,
+    network: &BondNetwork,
+    shares: &[f64],
+    section: BeamSection,
+) -> Result<Lattice, DemError> {
+    let period = packing.domain.period();
+    let nearest = |apart: Vec3| period.map_or(apart, |period| period.nearest(apart));
+    Lattice::between(&packing.position, &network.pairs, shares, section, packing.mean_radius(), &nearest)
 }

@@ -48,7 +48,9 @@ pub fn calibrate(samples: &[&Sample], asked: f64, criterion: StrengthCriterion) 
         let ratio = sample.lattice.section().radius / sample.mean_radius;
         (ratio, sample.network.coordination_all, sample.packing.len())
     };
-    let place = samples.first().filter(|_| criterion == StrengthCriterion::Principal).map(place);
+    // They were fitted to stresses of the middle of neighbourhoods.
+    let known = |sample: &&&Sample| criterion == StrengthCriterion::Principal && sample.to_wall.is_empty();
+    let place = samples.first().filter(known).map(place);
     let law = place.map(|(ratio, coordination, _)| asked / published::strength_ratio(ratio, coordination));
     let own = strength_law::stored()?;
     let own_law = place.filter(|&(ratio, coordination, _)| own.covers(ratio, coordination));

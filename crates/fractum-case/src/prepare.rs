@@ -13,7 +13,8 @@ use fractum_scene::ContactParameters;
 
 use crate::build::PreparedFacets;
 use crate::model::{
-    BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource, Material, PackingSource, RigidShape, SolverKind,
+    BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource, Material, PackingSource, Periodic, RigidShape,
+    SolverKind,
 };
 use crate::{Diagnostic, Diagnostics, Place, Spanned};
 
@@ -91,11 +92,14 @@ fn bonded_request<'a>(
                 frame: *frame,
                 species: species.as_deref(),
             },
-            shape: shape.as_ref().map(|shape| shape_of(&shape.value)),
+            shape: match (&case.periodic, shape) {
+                (Some(own), _) => Some(periodic_shape(own)),
+                (None, shape) => shape.as_ref().map(|shape| shape_of(&shape.value)),
+            },
             bond_gap: *bond_gap,
         },
         PackingSource::Shape { shape, size, dispersion, seed, arrangement } => PackingRequest::Fill {
-            shape: shape_of(&shape.value),
+            shape: case.periodic.as_ref().map_or_else(|| shape_of(&shape.value), |own| periodic_shape(own)),
             size: size.value,
             dispersion: *dispersion,
             seed: *seed,
@@ -128,6 +132,12 @@ fn bonded_request<'a>(
         },
         at_rest: case.solver.kind == SolverKind::Static,
     }
+}
+
+/// The periodic box, which a bonded body in it fills.
+fn periodic_shape(periodic: &Periodic) -> Shape<'static> {
+    let Periodic { point, size, .. } = periodic;
+    Shape::Plain(Domain::Periodic { lower: *point, upper: point + size.value })
 }
 
 fn shape_of(shape: &BondedShape) -> Shape<'_> {

@@ -41,7 +41,7 @@ pub use foot::Foot;
 pub use frame::Frame;
 pub use hierarchy::DoubleHierarchy;
 pub use nearest::{Nearest, nearest_facets};
-pub use periodic::PeriodicCell;
+pub use periodic::{Image, PeriodicCell, close_pairs_within};
 pub use shape::{Outside, Shape};
 pub use sphere_facet::SurfaceContacts;
 pub use sphere_grid::SphereGrid;

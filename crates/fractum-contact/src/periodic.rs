@@ -4,7 +4,6 @@ use fractum_math::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::broad_phase::close_pairs_of;
-use crate::touch::Spheres;
 
 /// A box that repeats along some axes, and how it deforms.
 ///
@@ -23,12 +22,28 @@ pub struct PeriodicCell {
 }
 
 /// Numbers of edges from a sphere to its image.
-pub(crate) type Image = [i32; 3];
+pub type Image = [i32; 3];
 
 impl PeriodicCell {
     /// Offset of an image [m].
-    pub(crate) fn offset(&self, image: &Image) -> Vec3 {
+    pub fn offset(&self, image: &Image) -> Vec3 {
         self.edges * image_vector(image)
+    }
+
+    /// Velocity of an image against the sphere [m/s].
+    pub fn velocity_of(&self, image: &Image) -> Vec3 {
+        self.velocity * image_vector(image)
+    }
+
+    /// The image that is nearest to the origin, of what is `apart` from it [m].
+    pub fn nearest_image(&self, apart: &Vec3) -> Image {
+        let own = self.upright();
+        nearest_of(&own, &self.upright_cell(&own), apart)
+    }
+
+    /// Σ f ⊗ n from Σ f ⊗ (H n), with the edges n from spheres to their images.
+    pub fn by_edges(&self, by_offsets: &Mat3) -> Mat3 {
+        solved_columns(&self.edges, &by_offsets.transpose()).transpose()
     }
 
     /// Volume of the box [m³].
@@ -99,6 +114,21 @@ impl PeriodicCell {
     }
 }
 
+/// The nearest image by the least oblique edges, in those of the box.
+fn nearest_of(own: &[Image; 3], upright: &PeriodicCell, apart: &Vec3) -> Image {
+    let parts = solved(&upright.edges, apart);
+    in_edges(own, &std::array::from_fn(|k| if upright.repeats[k] { -parts[k].round() as i32 } else { 0 }))
+}
+
+/// Pairs of spheres as [`close_pairs`](crate::close_pairs) finds them, in a box that repeats: ascending, with the image of the second sphere
+/// that is nearest to the first. Opposite sides must be apart by more than twice the distance at which two spheres are near.
+pub fn close_pairs_within(cell: &PeriodicCell, centres: &[Vec3], radii: &[f64], skin: f64) -> Vec<([u32; 2], Image)> {
+    let mut images = Images::new(*cell);
+    let pairs = images.close_pairs(centres, radii, skin);
+    images.note(pairs.iter().copied(), centres);
+    pairs.into_iter().zip(images.of_pairs).collect()
+}
+
 fn image_vector(image: &Image) -> Vec3 {
     Vec3::from_fn(|k, _| f64::from(image[k]))
 }
@@ -138,8 +168,8 @@ impl Images {
     /// Offset and velocity of the second sphere's image of a pair against the sphere [m, m/s].
     #[inline]
     pub(crate) fn shift(&self, pair: usize) -> [Vec3; 2] {
-        let image = image_vector(&self.of_pairs[pair]);
-        [self.cell.edges * image, self.cell.velocity * image]
+        let image = &self.of_pairs[pair];
+        [self.cell.offset(image), self.cell.velocity_of(image)]
     }
 
     /// Edges from the second sphere of a pair to its image.
@@ -158,20 +188,20 @@ impl Images {
     }
 
     /// Pairs of spheres of which some images are near, ascending; the images follow with [`Images::note`].
-    pub(crate) fn close_pairs(&mut self, spheres: &Spheres, skin: f64) -> Vec<[u32; 2]> {
+    pub(crate) fn close_pairs(&mut self, position: &[Vec3], radius: &[f64], skin: f64) -> Vec<[u32; 2]> {
         self.searched = self.cell;
-        let (own, count) = (self.cell.upright(), spheres.position.len());
+        let (own, count) = (self.cell.upright(), position.len());
         let upright = self.cell.upright_cell(&own);
-        let widest = spheres.radius.iter().fold(0.0f64, |a, &b| a.max(b));
+        let widest = radius.iter().fold(0.0f64, |a, &b| a.max(b));
         let margin = upright.heights().map(|height| (2.0 * widest + skin) / height);
-        let (mut centres, mut radii, mut owners) = (Vec::with_capacity(count), spheres.radius.to_vec(), Vec::new());
+        let (mut centres, mut radii, mut owners) = (Vec::with_capacity(count), radius.to_vec(), Vec::new());
         let mut ghosts = Vec::new();
-        for (place, owner) in spheres.position.iter().zip(0u32..) {
+        for (place, owner) in position.iter().zip(0u32..) {
             let parts = upright.parts(place);
             let inside =
                 Vec3::from_fn(|k, _| if self.cell.repeats[k] { parts[k] - parts[k].floor() } else { parts[k] });
             centres.push(self.cell.corner + upright.edges * inside);
-            if spheres.radius[owner as usize] < 0.0 {
+            if radius[owner as usize] < 0.0 {
                 continue;
             }
             let sides: [[f64; 2]; 3] = std::array::from_fn(|k| {
@@ -189,7 +219,7 @@ impl Images {
             }
         }
         centres.append(&mut ghosts);
-        radii.extend(owners.iter().map(|&owner| spheres.radius[owner as usize]));
+        radii.extend(owners.iter().map(|&owner| radius[owner as usize]));
         let owner = |i: u32| (i as usize).checked_sub(count).map_or(i, |ghost| owners[ghost]);
         let found = close_pairs_of(&centres, &radii, skin, &|i: usize| i < count);
         let mut pairs: Vec<[u32; 2]> = found
@@ -207,11 +237,7 @@ impl Images {
     pub(crate) fn note(&mut self, pairs: impl Iterator<Item = [u32; 2]>, position: &[Vec3]) {
         let own = self.cell.upright();
         let upright = self.cell.upright_cell(&own);
-        let image = |[i, j]: [u32; 2]| {
-            let parts = solved(&upright.edges, &(position[j as usize] - position[i as usize]));
-            let away: Image = std::array::from_fn(|k| if self.cell.repeats[k] { -parts[k].round() as i32 } else { 0 });
-            in_edges(&own, &away)
-        };
+        let image = |[i, j]: [u32; 2]| nearest_of(&own, &upright, &(position[j as usize] - position[i as usize]));
         self.of_pairs = pairs.map(image).collect();
     }
 }
@@ -238,10 +264,8 @@ mod tests {
             let (radius, skin) = (vec![0.4; places.len()], 0.1);
             prop_assume!(cell.narrowest() > 2.0 * (2.0 * 0.4 + skin));
             let position: Vec<Vec3> = places.iter().map(|x| Vec3::from(*x)).collect();
-            let still = vec![Vec3::zeros(); position.len()];
-            let spheres = Spheres { position: &position, velocity: &still, spin: &still, radius: &radius };
             let mut images = Images::new(cell);
-            let found = images.close_pairs(&spheres, skin);
+            let found = images.close_pairs(&position, &radius, skin);
             images.note(found.iter().copied(), &position);
             let mut pairs = found.iter().zip(&images.of_pairs);
             let span = |k: usize| if repeats[k] { 24 } else { 0 };

@@ -129,7 +129,7 @@ impl<L: ContactLaw> SphereContacts<L> {
         self.searched_at.extend_from_slice(spheres.position);
         let skin = self.skin + self.reach;
         let near = match &mut self.images {
-            Some(images) => images.close_pairs(spheres, skin),
+            Some(images) => images.close_pairs(spheres.position, spheres.radius, skin),
             None => close_pairs(spheres.position, spheres.radius, skin),
         };
         let found: Vec<([u32; 2], L)> =

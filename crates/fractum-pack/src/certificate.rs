@@ -33,7 +33,7 @@ pub struct Certificate {
     /// Directions of the contacts in the core, deeper than two mean diameters below the walls (in samples with fewer
     /// than 500 such contacts, of those between particles off the walls).
     pub isotropy: Isotropy,
-    /// Depth of the deepest centre below the walls [mean diameters].
+    /// Depth of the deepest centre below the walls [mean diameters]; infinite without walls.
     pub depth: f64,
     /// Young's modulus along x, y, z over their mean, when measured (box domains).
     pub elastic_isotropy: Option<[f64; 3]>,
@@ -81,7 +81,7 @@ impl Certificate {
     pub fn of(packing: &Packing) -> Self {
         let mean_radius = packing.mean_radius();
         let (least, largest) = packing.radius.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &r| (l.min(r), h.max(r)));
-        let neighbours = Neighbours::find(&packing.position, &packing.radius, NEAR, 0.0);
+        let neighbours = Neighbours::find(&packing.position, &packing.radius, NEAR, 0.0, packing.domain.period());
         let on_wall = packing.on_wall();
         let depth: Vec<f64> =
             packing.position.par_iter().map(|x| packing.domain.depth(x) / (2.0 * mean_radius)).collect();
@@ -91,7 +91,7 @@ impl Certificate {
         for i in 0..packing.len() {
             for &j in neighbours.of(i).iter().filter(|&&j| j as usize > i) {
                 let j = j as usize;
-                let d = packing.position[j] - packing.position[i];
+                let d = packing.apart([i, j]);
                 let overlap = (packing.radius[i] + packing.radius[j] - d.norm()) / mean_radius;
                 if overlap > 0.0 {
                     sum += overlap;
@@ -171,12 +171,13 @@ impl Certificate {
     }
 }
 
-/// Volume fraction of the core, deeper than two mean diameters below the walls, by a regular lattice of sample points;
+/// Volume fraction of the core, deeper than two mean diameters below the walls, or of all without walls, by a regular lattice of sample points;
 /// none when the core holds less than about 40 particles.
 pub fn interior_fraction(packing: &Packing) -> Option<f64> {
     let mean_radius = packing.mean_radius();
     let largest = packing.radius.iter().copied().fold(0.0, f64::max);
-    let depth = CORE * 2.0 * mean_radius;
+    let period = packing.domain.period();
+    let depth = if period.is_some() { 0.0 } else { CORE * 2.0 * mean_radius };
     let (lower, upper) = packing.domain.bounds();
     let (lower, upper) = (lower.add_scalar(depth), upper.add_scalar(-depth));
     let extent = upper - lower;
@@ -199,10 +200,16 @@ pub fn interior_fraction(packing: &Packing) -> Option<f64> {
                     }
                     total += 1;
                     let mut covered = false;
-                    grid.around(&p, largest, |q| {
-                        let r = packing.radius[q as usize];
-                        covered |= (packing.position[q as usize] - p).norm_squared() < r * r;
-                    });
+                    let mut look = |p: Vec3| {
+                        grid.around(&p, largest, |q| {
+                            let r = packing.radius[q as usize];
+                            covered |= (packing.position[q as usize] - p).norm_squared() < r * r;
+                        });
+                    };
+                    match period {
+                        None => look(p),
+                        Some(period) => period.images(p, largest).for_each(look),
+                    }
                     inside += usize::from(covered);
                 }
             }

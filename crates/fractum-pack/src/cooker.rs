@@ -52,6 +52,8 @@ const EXCESS_SLOPE: f64 = 120.0;
 const WINDOW: f64 = 0.08;
 /// Narrowest extent of a domain, in mean diameters.
 const NARROWEST: f64 = 2.5;
+/// The same of a box that repeats, in which no particle may meet two images of another: the longest bonds are two diameters long.
+const NARROWEST_PERIOD: f64 = 5.0;
 /// Net force over mean contact force at which a state counts as relaxed.
 const BALANCE: f64 = 0.02;
 /// The same for the first relaxation after forced insertion.
@@ -153,7 +155,12 @@ pub fn pack_and_tell(spec: &PackSpec, tell: &dyn Fn(PackProgress)) -> Result<Pac
     compaction.rattlers = rattlers(&contacts, &walls);
     compaction.contacts = contacts.iter().map(Vec::len).sum::<usize>() / 2;
 
-    for stiffness in [0.1, 0.01] {
+    if spec.domain.period().is_some() {
+        // No walls give way: the spheres shrink by what they overlap on average.
+        assembly.scale_radii(1.0 - 0.5 * compaction.overlap);
+        iterations += assembly.relax(0.1, 150).iterations;
+    }
+    for stiffness in [0.1, 0.01].into_iter().filter(|_| spec.domain.period().is_none()) {
         assembly.wall_stiffness = stiffness;
         iterations += assembly.relax(0.1, 150).iterations;
     }
@@ -162,13 +169,14 @@ pub fn pack_and_tell(spec: &PackSpec, tell: &dyn Fn(PackProgress)) -> Result<Pac
 
     let order = spatial_order(&assembly.position);
     let sorted = |i: &u32| *i as usize;
+    let inside = |x: &Vec3| spec.domain.period().map_or(*x, |period| period.within(x));
     let names = spec.domain.wall_names();
     let set = |w: usize| (0..count as u32).filter(|&k| walls[order[k as usize] as usize] >> w & 1 == 1).collect();
     Ok(Packing {
         domain: spec.domain.clone(),
         seed: spec.seed,
         dispersion: spec.dispersion,
-        position: order.iter().map(|i| assembly.position[sorted(i)]).collect(),
+        position: order.iter().map(|i| inside(&assembly.position[sorted(i)])).collect(),
         radius: order.iter().map(|i| assembly.radius[sorted(i)]).collect(),
         walls: names.iter().enumerate().map(|(w, name)| (name.to_string(), set(w))).collect(),
         compaction,
@@ -214,8 +222,9 @@ fn plan(spec: &PackSpec) -> Result<(usize, f64), PackError> {
     let (lower, upper) = spec.domain.bounds();
     let extent = (upper - lower).min();
     let across = extent / (2.0 * radius);
-    if count < 20 && matches!(spec.size, PackSize::MeanRadius(_)) || across < NARROWEST {
-        return Err(PackError::TooSmall { count, extent, across, needed: NARROWEST });
+    let needed = if spec.domain.period().is_some() { NARROWEST_PERIOD } else { NARROWEST };
+    if count < 20 && matches!(spec.size, PackSize::MeanRadius(_)) || across < needed {
+        return Err(PackError::TooSmall { count, extent, across, needed });
     }
     if !(20..=20_000_000).contains(&count) {
         return Err(PackError::Count(count));
@@ -240,6 +249,7 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
     let mut next = vec![u32::MAX; radius.len()];
     let mut position: Vec<Vec3> = Vec::with_capacity(radius.len());
     let coordinates = |p: &Vec3| [0, 1, 2].map(|a| (((p[a] - lower[a]) / cell).max(0.0) as usize).min(size[a] - 1));
+    let period = domain.period();
     let mut failures = 0;
     for (i, &r) in radius.iter().enumerate() {
         let mut best: Option<(f64, Vec3)> = None;
@@ -260,18 +270,24 @@ fn insert(domain: &Domain, radius: &[f64], random: &mut Random) -> Result<Vec<Ve
             if domain.depth(&x) < r {
                 continue;
             }
-            let [cx, cy, cz] = coordinates(&x);
             let mut gap = f64::INFINITY;
-            for z in cz.saturating_sub(1)..=(cz + 1).min(size[2] - 1) {
-                for y in cy.saturating_sub(1)..=(cy + 1).min(size[1] - 1) {
-                    for c in cx.saturating_sub(1)..=(cx + 1).min(size[0] - 1) {
-                        let mut j = first[(z * size[1] + y) * size[0] + c];
-                        while j != u32::MAX {
-                            gap = gap.min((position[j as usize] - x).norm() - r - radius[j as usize]);
-                            j = next[j as usize];
+            let mut look = |x: Vec3| {
+                let [cx, cy, cz] = coordinates(&x);
+                for z in cz.saturating_sub(1)..=(cz + 1).min(size[2] - 1) {
+                    for y in cy.saturating_sub(1)..=(cy + 1).min(size[1] - 1) {
+                        for c in cx.saturating_sub(1)..=(cx + 1).min(size[0] - 1) {
+                            let mut j = first[(z * size[1] + y) * size[0] + c];
+                            while j != u32::MAX {
+                                gap = gap.min((position[j as usize] - x).norm() - r - radius[j as usize]);
+                                j = next[j as usize];
+                            }
                         }
                     }
                 }
+            };
+            match period {
+                None => look(x),
+                Some(period) => period.images(x, cell).for_each(look),
             }
             if best.is_none_or(|(other, _)| gap > other) {
                 best = Some((gap, x));
@@ -413,6 +429,34 @@ mod tests {
             let worst = worst.fold(1.0, f64::min);
             assert!(worst > 0.85, "a particle stands out of {:?}: {worst}", packing.domain);
             assert!(packing.walls.iter().all(|(_, set)| !set.is_empty()));
+        }
+    }
+
+    #[test]
+    fn a_box_that_repeats_is_filled_to_random_close_packing_without_walls() {
+        let (lower, upper) = (Vec3::new(-1.0, 0.5, 3.0), Vec3::new(0.0, 1.7, 3.9));
+        for seed in 1..4 {
+            let packing = pack(&PackSpec::new(Domain::Periodic { lower, upper }, 1500, seed)).unwrap();
+            let certificate = Certificate::of(&packing);
+            certificate.check().unwrap();
+            assert!((6.2..=6.281).contains(&certificate.contacts.coordination_all), "{certificate:?}");
+            // All of it is core: by sample points, and by the spheres less their overlaps.
+            let (core, spheres) = (certificate.fraction_core.unwrap(), certificate.fraction_box);
+            assert!((0.625..0.65).contains(&core) && (core / spheres - 1.0).abs() < 5e-3, "{core} {spheres}");
+            assert!(packing.walls.is_empty());
+            assert!(packing.position.iter().all(|x| (0..3).all(|k| (lower[k]..=upper[k]).contains(&x[k]))));
+            for coordination in [6.0, 8.0, 10.0] {
+                let network = bond(&packing, coordination, Convention::Interior).unwrap();
+                let through = |pair: &&[u32; 2]| {
+                    let [a, b] = pair.map(|i| packing.position[i as usize]);
+                    (a - b).norm() > 2.0 * packing.apart(pair.map(|i| i as usize)).norm()
+                };
+                let share = network.pairs.iter().filter(through).count() as f64 / network.pairs.len() as f64;
+                assert!((0.1..0.5).contains(&share), "{share}");
+            }
+            let back = Packing::from_bytes(&packing.to_bytes()).unwrap();
+            assert_eq!(digest(&packing), digest(&back));
+            assert!(back.domain.period().is_some());
         }
     }
 

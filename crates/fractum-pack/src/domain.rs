@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use fractum_math::{Vec3, sphere_volume};
 use serde::{Deserialize, Serialize};
 
+use crate::period::Period;
 use crate::surface::SurfaceData;
 use crate::{ClosedSurface, PackError};
 
@@ -34,6 +35,13 @@ pub enum Domain {
     },
     /// A closed triangulated surface; wall `surface`.
     Surface(ClosedSurface),
+    /// A box with faces normal to the axes that repeats along them: no walls.
+    Periodic {
+        /// Lower corner [m].
+        lower: Vec3,
+        /// Upper corner [m].
+        upper: Vec3,
+    },
 }
 
 /// A domain's numbers, as stored in files.
@@ -47,6 +55,8 @@ pub enum DomainData {
     Sphere([f64; 3], f64),
     /// See [`Domain::Surface`].
     Surface(SurfaceData),
+    /// See [`Domain::Periodic`].
+    Periodic([f64; 3], [f64; 3]),
 }
 
 /// A particle pressed against a wall.
@@ -92,7 +102,7 @@ impl Domain {
     /// [`PackError::BadDimension`], [`PackError::TooFar`].
     pub fn check(&self) -> Result<(), PackError> {
         let lengths: Vec<(&'static str, f64)> = match self {
-            Domain::Box { lower, upper } => {
+            Domain::Box { lower, upper } | Domain::Periodic { lower, upper } => {
                 let d = upper - lower;
                 vec![("extent in x", d.x), ("extent in y", d.y), ("extent in z", d.z)]
             }
@@ -119,7 +129,7 @@ impl Domain {
     /// Volume [m³].
     pub fn volume(&self) -> f64 {
         match self {
-            Domain::Box { lower, upper } => (upper - lower).product(),
+            Domain::Box { lower, upper } | Domain::Periodic { lower, upper } => (upper - lower).product(),
             Domain::Cylinder { length, radius, .. } => PI * radius * radius * length,
             Domain::Sphere { radius, .. } => sphere_volume(*radius),
             Domain::Surface(surface) => surface.volume(),
@@ -136,13 +146,14 @@ impl Domain {
             Domain::Cylinder { length, radius, .. } => 2.0 * PI * radius * (length + radius),
             Domain::Sphere { radius, .. } => 4.0 * PI * radius * radius,
             Domain::Surface(surface) => surface.area(),
+            Domain::Periodic { .. } => 0.0,
         }
     }
 
     /// Lower and upper corner of the bounding box [m].
     pub fn bounds(&self) -> (Vec3, Vec3) {
         match self {
-            Domain::Box { lower, upper } => (*lower, *upper),
+            Domain::Box { lower, upper } | Domain::Periodic { lower, upper } => (*lower, *upper),
             Domain::Cylinder { start, length, radius } => {
                 let half = Vec3::new(0.0, *radius, *radius);
                 (start - half, start + half + Vec3::new(*length, 0.0, 0.0))
@@ -152,7 +163,13 @@ impl Domain {
         }
     }
 
-    /// Distance from `x` to the nearest wall [m], positive inside.
+    /// How it repeats; none for shapes with walls.
+    pub fn period(&self) -> Option<Period> {
+        let Domain::Periodic { lower, upper } = self else { return None };
+        Some(Period::new(*lower, *upper))
+    }
+
+    /// Distance from `x` to the nearest wall [m], positive inside; infinite without walls.
     pub fn depth(&self, x: &Vec3) -> f64 {
         match self {
             Domain::Surface(surface) => surface.depth(x),
@@ -180,6 +197,7 @@ impl Domain {
             Domain::Cylinder { .. } => Domain::CYLINDER_WALLS,
             Domain::Sphere { .. } => Domain::SPHERE_WALLS,
             Domain::Surface(_) => Domain::SURFACE_WALLS,
+            Domain::Periodic { .. } => &[],
         }
     }
 
@@ -207,7 +225,7 @@ impl Domain {
                 let distance = out.norm();
                 visit(0, radius - distance, if distance > 0.0 { -out / distance } else { Vec3::y() });
             }
-            Domain::Surface(_) => {}
+            Domain::Surface(_) | Domain::Periodic { .. } => {}
         }
     }
 
@@ -263,6 +281,7 @@ impl Domain {
             Domain::Cylinder { start, length, radius } => DomainData::Cylinder((*start).into(), *length, *radius),
             Domain::Sphere { centre, radius } => DomainData::Sphere((*centre).into(), *radius),
             Domain::Surface(surface) => DomainData::Surface(surface.data()),
+            Domain::Periodic { lower, upper } => DomainData::Periodic((*lower).into(), (*upper).into()),
         }
     }
 
@@ -278,6 +297,7 @@ impl Domain {
             }
             DomainData::Sphere(centre, radius) => Domain::Sphere { centre: (*centre).into(), radius: *radius },
             DomainData::Surface(data) => Domain::Surface(ClosedSurface::from_data(data)?),
+            DomainData::Periodic(lower, upper) => Domain::Periodic { lower: (*lower).into(), upper: (*upper).into() },
         };
         domain.check()?;
         Ok(domain)

@@ -4,8 +4,9 @@
 //! radii (the *cooker* of Jebahi et al. 2015: random insertion, forced insertion, relaxation, compaction, wall
 //! release). [`Certificate`] measures the result. [`bond`] joins neighbours to an asked coordination number.
 //!
-//! Not modelled: friction and gravity during packing, periodic boundaries, prescribed size distributions other than
-//! uniform.
+//! A box may repeat along its edges ([`Domain::Periodic`]): it has no walls.
+//!
+//! Not modelled: friction and gravity during packing, prescribed size distributions other than uniform.
 //!
 //! ```
 //! use fractum_pack::{Convention, Domain, PackSpec, bond, pack};
@@ -29,6 +30,7 @@ mod neighbours;
 mod network;
 mod orientations;
 mod packing;
+mod period;
 mod random;
 mod regular;
 mod relax;
@@ -48,7 +50,8 @@ pub use isotropy::Isotropy;
 pub use network::{BondNetwork, Convention, bond, pairs_within};
 pub use orientations::orientations;
 pub use packing::{Compaction, Packing};
-pub use regular::{Arrangement, regular};
+pub use period::Period;
+pub use regular::{Arrangement, regular, regular_repeating};
 pub use stl::{read_stl, read_stl_facets};
 pub use stream::{Sizes, place_in};
 pub use surface::{ClosedSurface, SurfaceData};

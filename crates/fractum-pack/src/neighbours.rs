@@ -1,6 +1,8 @@
 use fractum_math::Vec3;
 use rayon::prelude::*;
 
+use crate::period::Period;
+
 /// Number of particles handled as one block by every parallel loop of the cooker.
 pub(crate) const BLOCK: usize = 1024;
 
@@ -81,9 +83,11 @@ pub(crate) struct Neighbours {
 }
 
 impl Neighbours {
-    /// Pairs with |x_i − x_j| < factor (r_i + r_j) + gap, each listed on both sides.
-    pub(crate) fn find(position: &[Vec3], radius: &[f64], factor: f64, gap: f64) -> Self {
+    /// Pairs with |x_i − x_j| < factor (r_i + r_j) + gap, each listed on both sides; of the nearest images where space repeats.
+    pub(crate) fn find(position: &[Vec3], radius: &[f64], factor: f64, gap: f64, period: Option<Period>) -> Self {
         let largest = radius.iter().copied().fold(0.0, f64::max);
+        let inside: Option<Vec<Vec3>> = period.map(|period| position.iter().map(|x| period.within(x)).collect());
+        let position = inside.as_deref().unwrap_or(position);
         let grid = Grid::new(position, factor * 2.0 * largest + gap);
         let blocks: Vec<(Vec<u32>, Vec<u32>)> = (0..position.len().div_ceil(BLOCK))
             .into_par_iter()
@@ -93,12 +97,19 @@ impl Neighbours {
                 for i in block * BLOCK..((block + 1) * BLOCK).min(position.len()) {
                     let before = values.len();
                     let (x, r) = (position[i], radius[i]);
-                    grid.around(&x, factor * (r + largest) + gap, |j| {
-                        let touch = factor * (r + radius[j as usize]) + gap;
-                        if j as usize != i && (position[j as usize] - x).norm_squared() < touch * touch {
-                            values.push(j);
-                        }
-                    });
+                    let reach = factor * (r + largest) + gap;
+                    let mut look = |x: &Vec3| {
+                        grid.around(x, reach, |j| {
+                            let touch = factor * (r + radius[j as usize]) + gap;
+                            if j as usize != i && (position[j as usize] - x).norm_squared() < touch * touch {
+                                values.push(j);
+                            }
+                        });
+                    };
+                    match period {
+                        None => look(&x),
+                        Some(period) => period.images(x, reach).for_each(|image| look(&image)),
+                    }
                     values[before..].sort_unstable();
                     lengths.push((values.len() - before) as u32);
                 }
@@ -148,12 +159,32 @@ mod tests {
         ) {
             let position: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
             let radius: Vec<f64> = (0..position.len()).map(|i| 0.1 + 0.02 * (i % 7) as f64).collect();
-            let found = Neighbours::find(&position, &radius, 1.1, gap);
+            let found = Neighbours::find(&position, &radius, 1.1, gap, None);
             for i in 0..position.len() {
                 let all: Vec<u32> = (0..position.len())
                     .filter(|&j| j != i && (position[i] - position[j]).norm() < 1.1 * (radius[i] + radius[j]) + gap)
                     .map(|j| j as u32)
                     .collect();
+                prop_assert_eq!(found.of(i), &all[..]);
+            }
+        }
+
+        #[test]
+        fn images_are_neighbours_as_spheres_in_the_middle_are(
+            points in prop::collection::vec(prop::array::uniform3(-2.0f64..3.0), 1..120), gap in 0.0f64..0.4,
+        ) {
+            let position: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
+            let radius: Vec<f64> = (0..position.len()).map(|i| 0.1 + 0.02 * (i % 7) as f64).collect();
+            let (lower, size) = (Vec3::new(0.3, -1.0, 0.0), Vec3::new(2.5, 2.0, 3.0));
+            let period = Period::new(lower, lower + size);
+            let found = Neighbours::find(&position, &radius, 1.1, gap, Some(period));
+            for i in 0..position.len() {
+                let near = |j: usize| {
+                    let mut apart = position[i] - position[j];
+                    (0..3).for_each(|axis| apart[axis] -= size[axis] * (apart[axis] / size[axis]).round());
+                    apart.norm() < 1.1 * (radius[i] + radius[j]) + gap
+                };
+                let all: Vec<u32> = (0..position.len()).filter(|&j| j != i && near(j)).map(|j| j as u32).collect();
                 prop_assert_eq!(found.of(i), &all[..]);
             }
         }

@@ -76,7 +76,7 @@ pub fn bond(packing: &Packing, coordination: f64, convention: Convention) -> Res
 
 /// Pairs i < j, ascending, of spheres that are nearer to each other than a gap [m].
 pub fn pairs_within(packing: &Packing, gap: f64) -> Vec<[u32; 2]> {
-    let found = Neighbours::find(&packing.position, &packing.radius, 1.0, gap);
+    let found = Neighbours::find(&packing.position, &packing.radius, 1.0, gap, packing.domain.period());
     let after = |i: u32| found.of(i as usize).iter().filter(move |&&j| j > i).map(move |&j| [i, j]);
     (0..packing.len() as u32).flat_map(after).collect()
 }
@@ -91,7 +91,7 @@ impl BondNetwork {
         let ends = pairs.iter().flatten().filter(|&&i| !on_wall[i as usize]).count();
         let ratio = |&[i, j]: &[u32; 2]| {
             let (i, j) = (i as usize, j as usize);
-            (packing.position[i] - packing.position[j]).norm() / (packing.radius[i] + packing.radius[j])
+            packing.apart([i, j]).norm() / (packing.radius[i] + packing.radius[j])
         };
         BondNetwork {
             factor: pairs.iter().map(ratio).fold(0.0, f64::max),
@@ -112,12 +112,12 @@ impl BondNetwork {
 
 /// Pairs i < j within `factor`, ascending, with their distance over R_i + R_j.
 fn candidates(packing: &Packing, factor: f64) -> (Vec<[u32; 2]>, Vec<f64>) {
-    let found = Neighbours::find(&packing.position, &packing.radius, factor, 0.0);
+    let found = Neighbours::find(&packing.position, &packing.radius, factor, 0.0, packing.domain.period());
     let rows: Vec<Vec<([u32; 2], f64)>> = (0..packing.len())
         .into_par_iter()
         .map(|i| {
             let ratio = |j: u32| {
-                let distance = (packing.position[i] - packing.position[j as usize]).norm();
+                let distance = packing.apart([i, j as usize]).norm();
                 distance / (packing.radius[i] + packing.radius[j as usize])
             };
             found.of(i).iter().filter(|&&j| j as usize > i).map(|&j| ([i as u32, j], ratio(j))).collect()

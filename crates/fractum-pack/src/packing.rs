@@ -78,6 +78,12 @@ impl Packing {
         Packing { domain, seed: 0, dispersion: (largest - least) / mean, position, radius, walls, compaction }
     }
 
+    /// From the centre of the first particle of a pair to that of the second, or to its nearest image [m].
+    pub fn apart(&self, [i, j]: [usize; 2]) -> Vec3 {
+        let apart = self.position[j] - self.position[i];
+        self.domain.period().map_or(apart, |period| period.nearest(apart))
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.position.len()

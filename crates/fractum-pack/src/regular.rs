@@ -96,6 +96,36 @@ pub fn regular(lower: Vec3, upper: Vec3, radius: f64, arrangement: Arrangement) 
     Ok(Packing { domain, seed: 0, dispersion: 0.0, position, radius: vec![radius; count], walls, compaction })
 }
 
+/// [`regular`] in a box that repeats, which the arrangement must fill: without walls.
+///
+/// # Errors
+/// Those of [`regular`]; [`PackError::Refused`] for a box of other edges than whole cells, of which rows and layers come in pairs.
+pub fn regular_repeating(
+    lower: Vec3,
+    upper: Vec3,
+    radius: f64,
+    arrangement: Arrangement,
+) -> Result<Packing, PackError> {
+    let made = regular(lower, upper, radius, arrangement)?;
+    let (_, filled) = made.domain.bounds();
+    let step = (filled - lower).component_div(&Vec3::repeat(2.0 * radius));
+    let even = |axis: usize, height: f64| ((step[axis] / height).round() as u64).is_multiple_of(2);
+    let pairs = arrangement != Arrangement::Staggered || even(1, 0.75f64.sqrt()) && even(2, (2.0f64 / 3.0).sqrt());
+    if (upper - filled).amax() > WHOLE * radius || !pairs {
+        let size = (upper - lower) / (2.0 * radius);
+        return Err(PackError::Refused {
+            target: "a periodic box of whole cells of the arrangement".into(),
+            reached: format!("edges of {:.6}, {:.6} and {:.6} diameters", size.x, size.y, size.z),
+            remedy: "edges of 2 r times whole numbers; staggered: √3 r times an even number along y, √(8/3) r times one along z",
+        });
+    }
+    let domain = Domain::Periodic { lower, upper };
+    Ok(Packing { domain, walls: Vec::new(), ..made })
+}
+
+/// Part of a radius that is rounding of edges.
+const WHOLE: f64 = 1e-6;
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -113,6 +143,17 @@ mod tests {
             }
             let filled = packing.sphere_volume() / packing.domain.volume();
             assert!((filled / arrangement.fraction().unwrap() - 1.0).abs() < 1e-12, "{arrangement:?}: {filled}");
+        }
+        let layers = Vec3::new(1.0, 0.6 * 3f64.sqrt(), 0.6 * (8.0f64 / 3.0).sqrt());
+        let boxes = [(Arrangement::Cartesian, Vec3::repeat(1.0)), (Arrangement::Staggered, layers)];
+        for (arrangement, size) in boxes {
+            let packing = regular_repeating(Vec3::zeros(), size, 0.05, arrangement).unwrap();
+            let network = bond(&packing, arrangement.neighbours().unwrap(), Convention::All).unwrap();
+            assert_eq!(Some(network.coordination_all), arrangement.neighbours());
+            for pair in &network.pairs {
+                assert!((packing.apart(pair.map(|i| i as usize)).norm() / 0.1 - 1.0).abs() < 1e-9);
+            }
+            assert!(regular_repeating(Vec3::zeros(), size * 1.01, 0.05, arrangement).is_err());
         }
         assert!(regular(Vec3::zeros(), Vec3::new(1.0, 1.0, 0.15), 0.05, Arrangement::Cartesian).is_err());
     }

@@ -81,7 +81,11 @@ impl<'a> Assembly<'a> {
 
     fn search(&mut self) {
         let skin = SKIN * self.mean_radius();
-        self.neighbours = Neighbours::find(&self.position, &self.radius, 1.0, skin);
+        let period = self.domain.period();
+        if let Some(period) = period {
+            self.position.iter_mut().for_each(|x| *x = period.within(x));
+        }
+        self.neighbours = Neighbours::find(&self.position, &self.radius, 1.0, skin, period);
         if let Domain::Surface(surface) = self.domain {
             let rows: Vec<Vec<u32>> = self
                 .position
@@ -178,6 +182,7 @@ impl<'a> Assembly<'a> {
         let Assembly {
             domain, position, radius, velocity, force, sphere, neighbours, near_walls, wall_stiffness, ..
         } = self;
+        let period = domain.period();
         let partial: Vec<Sums> = force
             .par_chunks_mut(BLOCK)
             .enumerate()
@@ -189,7 +194,10 @@ impl<'a> Assembly<'a> {
                     let mut f = Vec3::zeros();
                     for &j in neighbours.of(i) {
                         let [px, py, pz, pr] = sphere[j as usize];
-                        let d = Vec3::new(x.x - px, x.y - py, x.z - pz);
+                        let mut d = Vec3::new(x.x - px, x.y - py, x.z - pz);
+                        if let Some(period) = &period {
+                            d = period.nearest(d);
+                        }
                         let touch = r + pr;
                         let square = d.norm_squared();
                         if square < touch * touch {
@@ -247,13 +255,15 @@ impl<'a> Assembly<'a> {
         if !self.searched {
             self.search();
         }
+        let period = self.domain.period();
+        let nearest = |apart: Vec3| period.map_or(apart, |period| period.nearest(apart));
         let contacts = (0..self.position.len())
             .into_par_iter()
             .map(|i| {
                 let x = self.position[i];
                 let touches = |&&j: &&u32| {
                     let touch = self.radius[i] + self.radius[j as usize];
-                    (x - self.position[j as usize]).norm_squared() < touch * touch
+                    nearest(x - self.position[j as usize]).norm_squared() < touch * touch
                 };
                 self.neighbours.of(i).iter().filter(touches).copied().collect()
             })

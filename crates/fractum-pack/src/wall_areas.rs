@@ -39,6 +39,7 @@ impl Domain {
     fn visit_patches(&self, wall: usize, width: f64, visit: &mut dyn FnMut(Vec3, Vec3)) {
         let parts = |length: f64| (length / width).ceil().max(1.0) as usize;
         match self {
+            Domain::Periodic { .. } => {}
             Domain::Box { lower, upper } => {
                 let (axis, size) = (wall / 2, upper - lower);
                 let (sign, level) = if wall.is_multiple_of(2) { (-1.0, lower[axis]) } else { (1.0, upper[axis]) };

@@ -10,11 +10,12 @@ use fractum_calibrate::{
     Beams, BondedMaterial, CalibrateError, Sample, prepare, prepare_sample, suitable_coordination,
 };
 use fractum_dem::Clumps;
+use fractum_math::Vec3;
 use fractum_mesh::{Mesh, topology};
 use fractum_output::warning::Code;
 use fractum_pack::{
     Arrangement, BondNetwork, Certificate, ClosedSurface, Convention, Domain, PackError, PackProgress, PackSize,
-    PackSpec, Packing, pack_certified, read_stl, regular,
+    PackSpec, Packing, pack_certified, read_stl, regular, regular_repeating,
 };
 use fractum_scene::BondFracture;
 use serde::Serialize;
@@ -28,6 +29,9 @@ use crate::region::{Region, Space, region};
 pub use interfaces::InterfaceReport;
 use own_particles::OwnParticles;
 pub use strengths::FoundStrengths;
+
+/// Fills a box of these corners with particles of a radius, regularly.
+type Fill = fn(Vec3, Vec3, f64, Arrangement) -> Result<Packing, PackError>;
 
 /// Contacts per particle at which compaction stops.
 const CONTACTS: f64 = 6.2;
@@ -359,14 +363,17 @@ impl Maker<'_> {
             Some(region) => region.domain.clone(),
             None => self.domain(shape)?,
         };
-        if let (
-            Arrangement::Cartesian | Arrangement::Staggered,
-            Domain::Box { lower, upper },
-            ParticleSize::Radius(radius),
-        ) = (self.arrangement(), &domain, size)
-        {
-            let made = regular(*lower, *upper, radius, self.arrangement());
-            return made.map(|packing| (packing, Origin::Made)).map_err(|error| Fault::new(At::Size, error));
+        let fill = match (self.arrangement(), &domain) {
+            (Arrangement::Random, _) => None,
+            (_, Domain::Box { .. }) => Some(regular as Fill),
+            (_, Domain::Periodic { .. }) => Some(regular_repeating as Fill),
+            _ => None,
+        };
+        if let (Some(fill), ParticleSize::Radius(radius)) = (fill, size) {
+            let (lower, upper) = domain.bounds();
+            return fill(lower, upper, radius, self.arrangement())
+                .map(|packing| (packing, Origin::Made))
+                .map_err(|error| Fault::new(At::Size, error));
         }
         let (count, radius) = match size {
             ParticleSize::Count(count) => (Some(count), None),

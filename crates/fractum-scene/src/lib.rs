@@ -46,7 +46,7 @@ mod subcycling;
 mod time_function;
 mod watch;
 
-pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest};
+pub use bonded::{BondFracture, Bonded, BondedBody, BondedPart, BondedState, Closest, narrowest_box};
 pub use clock::{Clock, Phase, TimeStepSettings};
 pub use conditions::*;
 pub use contact_pairs::{ContactBody, ContactPairs, PairContact};

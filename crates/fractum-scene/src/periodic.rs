@@ -1,17 +1,18 @@
-//! Loose particles in a box that repeats: how the box deforms, what its sides do, and its stress.
+//! Particles in a box that repeats: how the box deforms, what its sides do, and its stress.
 //!
 //! A particle is one of its images and never leaps. Images differ by edges n of the box H in place, H n, and in velocity, Ḣ n. What the
 //! forces do on a particle and on its image differs by f · Ḣ n: that is the work of the box. Where Ḣ changes, the mean flow
 //! Ḣ H⁻¹ (x - x_c) about the centre of mass changes with it, so that all images of a particle feel the same; no momentum comes in.
 //!
 //! In the ledger kinetic energy is that of the motion against the mean flow. The work of the box is then V σ : L per time, with the stress
-//! of contacts and of this motion, whatever images stand for the particles.
+//! of contacts, bonds and this motion, whatever images stand for the particles.
 
 use fractum_contact::PeriodicCell;
 use fractum_dem::Particles;
 use fractum_math::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::bonded::{Bonded, set_cell_velocity, sums_through_box};
 use crate::clock::ThisStep;
 use crate::contacts::Contacts;
 use crate::time_function::TimeFunction;
@@ -43,6 +44,8 @@ pub struct BoxServo {
 pub struct PeriodicBox {
     pub(crate) strain: BoxStrain,
     pub(crate) state: PeriodicState,
+    /// Least distance of opposite sides that bonded bodies need [m].
+    pub(crate) bonded_needs: f64,
 }
 
 /// What changes in a box that repeats.
@@ -119,17 +122,20 @@ impl PeriodicBox {
     /// Deforms until tⁿ⁺¹; returns the least distance of two sides and the one that contacts need, where that is larger [m].
     pub(crate) fn deform(
         &mut self,
-        particles: &mut Particles,
+        bonded: &mut Bonded,
         contacts: &mut Contacts,
         step: &ThisStep,
     ) -> Result<(), [f64; 2]> {
         let ThisStep { is_first, measure, dt_before, dt_after, .. } = *step;
-        let PeriodicBox { strain, state } = self;
+        let PeriodicBox { strain, state, bonded_needs } = self;
         let deforms = !strain.rates.is_empty() || !strain.servos.is_empty();
         if !deforms && !measure {
             return Ok(());
         }
-        let [through, virial] = contacts.sums_through_box(particles).unwrap_or_default();
+        let [of_bonds, virial_of_bonds] = sums_through_box(bonded);
+        let [through, virial] = contacts.sums_through_box(&bonded.particles).unwrap_or_default();
+        let (through, virial) = (through + of_bonds, virial + virial_of_bonds);
+        let particles = &mut bonded.particles;
         if !is_first {
             state.work[0] -= 0.5 * dt_before * through.dot(&state.cell.velocity);
         }
@@ -161,7 +167,8 @@ impl PeriodicBox {
             state.cell.edges += after * dt_after;
         }
         contacts.set_cell(&state.cell);
-        let (narrowest, needed) = (state.cell.narrowest(), contacts.narrowest_box());
+        set_cell_velocity(bonded, &after);
+        let (narrowest, needed) = (state.cell.narrowest(), contacts.narrowest_box().max(*bonded_needs));
         // A box that is no number is left to the balance.
         if narrowest < needed { Err([narrowest, needed]) } else { Ok(()) }
     }

@@ -4,6 +4,7 @@ use fractum_contact::PeriodicCell;
 use fractum_dem::Particles;
 use fractum_math::{Mat3, Vec3, sphere_volume};
 
+use crate::bonded::{narrowest_box, set_cell, touching_faces};
 use crate::clock::ThisStep;
 use crate::error::StepError;
 use crate::periodic::{BoxStrain, MeanMotion, PeriodicBox, PeriodicState, gradient};
@@ -20,7 +21,7 @@ pub enum BoxMeasure {
     Pressure,
     /// Volume of the particles over that of the box.
     SolidFraction,
-    /// Contacts per particle.
+    /// Contacts and bonds per particle.
     Coordination,
     /// Volume of the box [m³].
     Volume,
@@ -39,7 +40,8 @@ pub fn with_periodic_box(mut scene: Scene, cell: PeriodicCell, strain: BoxStrain
         stress: Mat3::zeros(),
         kinetic_stress: Mat3::zeros(),
     };
-    scene.optional.periodic = Some(Box::new(PeriodicBox { strain, state }));
+    let bonded_needs = narrowest_box(&scene.bonded);
+    scene.optional.periodic = Some(Box::new(PeriodicBox { strain, state, bonded_needs }));
     scene
 }
 
@@ -78,7 +80,11 @@ pub fn measure_periodic_box(scene: &Scene, measure: BoxMeasure) -> f64 {
             let radii = scene.bonded.particles.radius.iter();
             radii.map(|radius| sphere_volume(*radius)).sum::<f64>() / cell.volume()
         }
-        BoxMeasure::Coordination => 2.0 * scene.contacts.touching_among() as f64 / scene.bonded.particles.len() as f64,
+        BoxMeasure::Coordination => {
+            let (bonds, broken) = scene.bonded.bond_counts();
+            let touching = scene.contacts.touching_among() + touching_faces(&scene.bonded) + bonds - broken;
+            2.0 * touching as f64 / scene.bonded.particles.len() as f64
+        }
         BoxMeasure::Volume => cell.volume(),
         BoxMeasure::Strain([i, j]) => cell.edges[(i, j)] / start[(j, j)] - if i == j { 1.0 } else { 0.0 },
     }
@@ -98,6 +104,13 @@ pub(crate) fn start_box(scene: &mut Scene, step: &ThisStep) {
     contacts.set_cell(cell);
 }
 
+/// Gives the bonds the box of tⁿ, before their forces are found; it stays theirs until those of the next step.
+pub(crate) fn put_bonds_in_box(scene: &mut Scene) {
+    if let Some(own) = &scene.optional.periodic {
+        set_cell(&mut scene.bonded, &own.state.cell);
+    }
+}
+
 /// Finds the stress of the box at tⁿ, has it deform until tⁿ⁺¹, and changes the mean flow with it; between the forces of tⁿ and the kick.
 ///
 /// # Errors
@@ -105,7 +118,7 @@ pub(crate) fn start_box(scene: &mut Scene, step: &ThisStep) {
 pub(crate) fn deform_box(scene: &mut Scene, step: &ThisStep) -> Result<(), StepError> {
     let Scene { optional, bonded, contacts, clock, .. } = scene;
     let Some(own) = &mut optional.periodic else { return Ok(()) };
-    own.deform(&mut bonded.particles, contacts, step).map_err(|[narrowest, needed]| StepError::BoxTooNarrow {
+    own.deform(bonded, contacts, step).map_err(|[narrowest, needed]| StepError::BoxTooNarrow {
         step: clock.step,
         time: step.time,
         narrowest,

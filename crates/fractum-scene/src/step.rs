@@ -11,7 +11,7 @@ use crate::error::StepError;
 use crate::interfaces::motion::InterfaceStep;
 use crate::leave::{hold_departed_particles, remove_departed_fragments, remove_departed_particles};
 use crate::ranks::{follow_near, follow_removal, gather_watched, search_together};
-use crate::repeat::{book_box, deform_box, start_box};
+use crate::repeat::{book_box, deform_box, put_bonds_in_box, start_box};
 use crate::scene::Scene;
 use crate::stable_step::{next_dt, update_contact_frequency, update_wall_frequency};
 use crate::subcycling::short_steps_in;
@@ -229,6 +229,7 @@ fn add_bond_forces(scene: &mut Scene, step: &ThisStep, passed: &mut impl FnMut(P
     if scene.bonded.is_empty() {
         return (0.0, Work::default());
     }
+    put_bonds_in_box(scene);
     let faces = scene.bonded.update_bond_forces(step.elapsed, step.measure);
     let load = scene.bonded.add_loads(step.time, step.dt_before);
     if scene.bonded.has_bonds() {

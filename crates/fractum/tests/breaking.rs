@@ -264,3 +264,26 @@ fn what_cannot_be_solved_from_break_to_break_says_why() {
         assert!(ended.stderr.contains(words) && ended.stderr.contains("solver.kind"), "{to}: {}", ended.stderr);
     }
 }
+
+#[test]
+fn strength_is_calibrated_with_the_stress_of_walls_where_that_is_asked() {
+    let place = Workplace::new("");
+    let calibrate = |folder: &str, more: &[&str]| {
+        let asked =
+            ["calibrate", "--young", "72 GPa", "--poisson", "0.23", "--strength", "50 MPa", "--particles", "400"];
+        place.fractum(&[&asked[..], &["-o", folder], more].concat())
+    };
+    let strength = |folder: &str| {
+        let text = fs::read_to_string(place.path(folder).join("material.toml")).unwrap();
+        let line = text.lines().find(|line| line.starts_with("criterion_strength")).unwrap().to_owned();
+        (line.split('"').nth(1).unwrap().trim_end_matches(" Pa").parse::<f64>().unwrap(), text)
+    };
+    assert_eq!(calibrate("inside", &[]).code, Some(0));
+    assert_eq!(calibrate("at-walls", &["--at-walls"]).code, Some(0));
+    let ((inside, without), (at_walls, with)) = (strength("inside"), strength("at-walls"));
+    assert!(with.contains("at_walls = true") && !without.contains("at_walls"), "{with}");
+    // The stress at the wall is the larger one, and needs the larger strength.
+    assert!(at_walls > inside && at_walls < 1.5 * inside, "{inside} {at_walls}");
+    let beams = calibrate("beams", &["--at-walls", "--criterion", "beam"]);
+    assert!(beams.code == Some(1) && beams.stderr.contains("no effect on single beams"), "{}", beams.stderr);
+}

@@ -11,8 +11,9 @@ use fractum_mesh::generate::{Jitter, structured_box};
 use fractum_mesh::topology::boundary_of_tetrahedra;
 use fractum_scene::coupling::{Debris, Layer};
 use fractum_scene::{
-    Bonded, BondedPart, ContactMaterial, ContactParameters, Contacts, ElasticMaterial, Gravity, Load, Loads, Motion,
-    NodalForce, NodesOnShape, Scene, SceneSettings, SolidSurface, Support, Supports, TimeStepSettings,
+    Bonded, BondedPart, BoxMeasure, BoxServo, BoxStrain, ContactMaterial, ContactParameters, Contacts, ElasticMaterial,
+    Gravity, Load, Loads, Motion, NodalForce, NodesOnShape, Scene, SceneSettings, SolidSurface, Support, Supports,
+    TimeFunction, TimeStepSettings, measure_periodic_box, periodic_cell, with_periodic_box,
 };
 
 /// The allocator of the system, counting requests while it is told to.
@@ -231,16 +232,55 @@ fn clumps() -> Scene {
     let part = BondedPart { name, particles, pairs, law, shares, density: 1.0, fraction: 1.0, fracture: None, clumps };
     let mut bonded = Bonded::new(vec![part]).unwrap();
     bonded.set_loads(vec![Load::Gravity(Gravity { axis: 2, value: Arc::new(|_, _| -1e-3) })]);
-    let material = ContactMaterial {
+    let contacts = Contacts::new(&bonded, vec![soft()], Vec::new(), Vec::new(), Vec::new());
+    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new())
+        .with_bonded(bonded)
+        .with_contacts(contacts, &[])
+}
+
+/// A cubic lattice of bonded particles through all sides of a box that is pulled, sheared and held.
+fn repeating() -> Scene {
+    const SIDE: usize = 12;
+    let at = |i: usize| [i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE];
+    let count = SIDE.pow(3);
+    let next = |i: usize, axis: usize| {
+        let mut other = at(i);
+        other[axis] = (other[axis] + 1) % SIDE;
+        [i as u32, (other[0] + SIDE * (other[1] + SIDE * other[2])) as u32]
+    };
+    let pairs = (0..count).flat_map(|i| [0, 1, 2].map(|axis| next(i, axis))).collect();
+    let position = (0..count).map(|i| Vec3::from(at(i).map(|k| k as f64))).collect();
+    let part = BondedPart {
+        name: "lattice".into(),
+        particles: Particles::at_rest(position, vec![0.5; count], count as f64).unwrap(),
+        pairs,
+        law: BeamSection::new(1e3, 0.3).unwrap().into(),
+        shares: Vec::new(),
+        density: 1.0,
+        fraction: 0.5,
+        fracture: None,
+        clumps: Clumps::default(),
+    };
+    let cell = periodic_cell(Vec3::zeros(), &Vec3::repeat(SIDE as f64), [true; 3]);
+    let bonded = Bonded::within(vec![part], Some(&cell)).unwrap();
+    let contacts = Contacts::new(&bonded, vec![soft()], Vec::new(), Vec::new(), Vec::new()).within(cell);
+    let servo = BoxServo { axis: 1, stress: Arc::new(|_, _| -1.0), rate: 1e-3, slows_at: 0.1 };
+    let rates = [[0, 0], [0, 2]].map(|at| {
+        let rate: TimeFunction = Arc::new(|_, _| 1e-4);
+        (at, rate)
+    });
+    let scene = scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new());
+    let scene = scene.with_bonded(bonded).with_contacts(contacts, &[]);
+    with_periodic_box(scene, cell, BoxStrain { rates: rates.to_vec(), servos: vec![servo] })
+}
+
+fn soft() -> ContactMaterial {
+    ContactMaterial {
         elastic: ElasticMaterial { young_modulus: 1e3, poisson_ratio: 0.2 },
         density: 1.0,
         surface: ContactParameters::default(),
         work_of_adhesion: 0.0,
-    };
-    let contacts = Contacts::new(&bonded, vec![material], Vec::new(), Vec::new(), Vec::new());
-    scene(Solid::new(Vec::new(), Vec::new()).unwrap(), Vec::new(), Vec::new(), Vec::new())
-        .with_bonded(bonded)
-        .with_contacts(contacts, &[])
+    }
 }
 
 /// Requests for memory in 100 steps, after 50 that warm up; the queues of the threads grow in these.
@@ -313,6 +353,10 @@ fn a_warm_step_allocates_nothing() {
         let mut scene = bonded_bar(1.0);
         assert_eq!(requests(&mut scene), 0, "bonded particles");
         assert!(scene.counts().bonds > 7000);
+
+        let mut scene = repeating();
+        assert_eq!(requests(&mut scene), 0, "bonded through the sides of a periodic box");
+        assert!(measure_periodic_box(&scene, BoxMeasure::Volume) > 1.0);
 
         let mut scene = bonded_bar(1.2);
         assert_eq!(requests(&mut scene), 0, "bonded particles, high frequencies damped");

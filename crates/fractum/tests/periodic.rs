@@ -378,7 +378,7 @@ fn what_a_periodic_box_cannot_be_beside_is_refused_by_name() {
     let floor = "[[bodies]]\nname = \"floor\"\nkind = \"rigid\"\nshape = \"plane\"\nnormal = \"z\"";
     refused(&with(size, floor), &["\"floor\"", "would cross sides of the periodic box"]);
     let bonded = "[[bodies]]\nname = \"rock\"\nkind = \"bonded\"\nmaterial = \"soft\"\nshape = \"box\"\nsize = [\"1 mm\", \"1 mm\", \"1 mm\"]";
-    refused(&with(size, bonded), &["\"rock\" is bonded in a periodic box"]);
+    refused(&with(size, bonded), &["\"rock\" is bonded and not alone"]);
     let domain =
         format!("[periodic]\n{size}\n[solver]\nend = \"1 ms\"\ndomain = {{ min = [0, 0, 0], max = [1, 1, 1] }}");
     refused(&domain, &["which nothing leaves"]);

@@ -33,6 +33,7 @@ mod particle_files;
 mod parts;
 mod peeling;
 mod periodic;
+mod periodic_bonded;
 mod processor;
 mod ranks;
 mod ranks_mesh;

@@ -6,6 +6,7 @@ mod breaking;
 mod chain;
 mod gauge;
 mod hydrostatic;
+mod periodic;
 mod shear;
 mod tension;
 mod vibration;
@@ -19,6 +20,7 @@ pub use breaking::{
 pub use chain::chain;
 pub use gauge::Gauge;
 pub use hydrostatic::{Hydrostatic, hydrostatic};
+pub use periodic::{stiffness, uniaxial, voigt};
 pub use shear::{Shear, shear};
 pub use tension::{Tension, tension};
 pub use vibration::{Impact, Vibration, VibrationMode, impact, vibration};

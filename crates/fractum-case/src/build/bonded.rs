@@ -11,9 +11,9 @@ use fractum_prepare::PreparedBody;
 use fractum_scene::coupling::Attachment;
 use fractum_scene::{Bonded, BondedPart, EntryMotion, FlatFaces, Inlet, Support};
 
-use super::Context;
 use super::conditions::{LoadedPoints, motion_of};
 use super::precheck::check_field;
+use super::{Context, periodic};
 use crate::model::{
     BodyKind, BondedBody, Case, FileUnit, LooseBody, LooseSource, Material, PackingSource, Selection, TimeStep,
 };
@@ -93,7 +93,8 @@ impl Context<'_> {
             start += count;
         }
         let frequency_of_all = case.solver.time_step != TimeStep::Element;
-        let joined = Bonded::new(parts).and_then(|mut bonded| {
+        let cell = periodic::cell(case);
+        let joined = Bonded::within(parts, cell.as_ref()).and_then(|mut bonded| {
             bonded.set_dissipation(case.damping.tchamwa_wielgosz.unwrap_or(1.0));
             if frequency_of_all {
                 bonded.find_frequency()?;

@@ -2,16 +2,21 @@
 
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
-use fractum_scene::{BoxServo, BoxStrain, Contacts, PeriodicCell, Scene, periodic_cell, with_periodic_box};
+use fractum_scene::{BoxServo, BoxStrain, PeriodicCell, Scene, narrowest_box, periodic_cell, with_periodic_box};
 
 use super::{Context, function};
 use crate::measure::ContactForce;
-use crate::model::{BodyKind, Case, LoadKind, LooseSource, Periodic, ProbeKind, RigidShape, SolverKind};
+use crate::model::{
+    Body, BodyKind, BondLawKind, BondedBody, BondedShape, Case, LoadKind, LooseSource, PackingSource, Periodic,
+    ProbeKind, RigidShape, SolverKind,
+};
 use crate::reader::vectors::AXES;
 use crate::{Diagnostic, Place};
 
 /// Component of the normal of a plane along an axis that is rounding.
 const ACROSS: f64 = 1e-9;
+/// Difference of two boxes over their smallest edge that is rounding.
+const SAME: f64 = 1e-9;
 
 /// Refuses what knows no box that repeats, and probes of one that is not there.
 pub(super) fn check(context: &mut Context<'_>) {
@@ -35,7 +40,7 @@ pub(super) fn check(context: &mut Context<'_>) {
 
 /// What a box that repeats cannot be beside: place, what is found there, what was expected.
 fn refused<'c>(case: &'c Case, periodic: &'c Periodic) -> Vec<(&'c Place, String, &'static str)> {
-    const LOOSE: &str = "loose particles (kind = \"particles\"), and rigid planes across the axes that do not repeat";
+    const LOOSE: &str = "loose particles (kind = \"particles\") with rigid planes across the axes that do not repeat, or one bonded body";
     let mut found = Vec::new();
     let mut refuse = |place: &'c Place, text: String, expected| found.push((place, text, expected));
     if periodic.axes == [false; 3] {
@@ -59,7 +64,11 @@ fn refused<'c>(case: &'c Case, periodic: &'c Periodic) -> Vec<(&'c Place, String
         let (place, name) = (&body.name.place, &body.name.value);
         match &body.kind {
             BodyKind::Solid(_) => refuse(place, format!("= \"{name}\" is a solid in a periodic box"), LOOSE),
-            BodyKind::Bonded(_) => refuse(place, format!("= \"{name}\" is bonded in a periodic box"), LOOSE),
+            BodyKind::Bonded(bonded) => {
+                for (place, text, expected) in refused_of_bonded(case, periodic, body, bonded) {
+                    refuse(place, format!("{text}, in a periodic box"), expected);
+                }
+            }
             BodyKind::Particles(loose) if matches!(loose.source, LooseSource::Inlet { .. }) => {
                 let expected = "particles that are there from the start";
                 refuse(place, format!("= \"{name}\" comes in through an inlet, in a periodic box"), expected);
@@ -115,6 +124,58 @@ fn refused<'c>(case: &'c Case, periodic: &'c Periodic) -> Vec<(&'c Place, String
     found
 }
 
+/// What a bonded body cannot be in a box that repeats: place, what is found there, what was expected.
+fn refused_of_bonded<'c>(
+    case: &'c Case,
+    periodic: &'c Periodic,
+    body: &'c Body,
+    bonded: &'c BondedBody,
+) -> Vec<(&'c Place, String, &'static str)> {
+    const FILLS: &str = "shape = \"box\" with the point and the size of [periodic]";
+    let (place, name) = (&body.name.place, &body.name.value);
+    let material = &case.materials[bonded.material];
+    let mut found = Vec::new();
+    let mut refuse = |is_wrong: bool, place: &'c Place, text: String, expected| {
+        if is_wrong {
+            found.push((place, text, expected));
+        }
+    };
+    let partly = periodic.axes != [true; 3];
+    refuse(partly, &periodic.place, "has a bonded body, and does not repeat along all axes".into(), "no periodic.axes");
+    let alone = case.bodies.len() == 1;
+    refuse(!alone, place, format!("= \"{name}\" is bonded and not alone"), "one bonded body, which fills the box");
+    refuse(bonded.replaces.is_some(), place, format!("= \"{name}\" replaces a part of a solid"), "no replaces");
+    let stiffens = bonded.wall_stiffening > 0.0;
+    refuse(stiffens, place, format!("= \"{name}\" has wall_stiffening and no walls"), "no wall_stiffening");
+    let beside_mean = bonded.law == BondLawKind::LocalNonlocal;
+    let laws = "bond = \"cohesive-beam\" or \"local\"";
+    refuse(beside_mean, place, format!("= \"{name}\": its bonds know the mean strain of particles"), laws);
+    let viscous = bonded.law == BondLawKind::Local
+        && material.interfaces.as_ref().is_some_and(|own| own.value.law.damping_ratio > 0.0);
+    let interfaces = "no damping_ratio in materials.NAME.interface";
+    refuse(viscous, place, format!("= \"{name}\": its bonds are viscous"), interfaces);
+    let at_walls = material.fracture.as_ref().filter(|own| own.value.strength.at_walls);
+    if let Some(own) = at_walls {
+        refuse(true, &own.place, ".at_walls is true without walls".into(), "at_walls = false");
+    }
+    let fills = |shape: &BondedShape| {
+        let BondedShape::Box { point, size } = shape else { return false };
+        let limit = SAME * periodic.size.value.min();
+        (point - periodic.point).amax() <= limit && (size - periodic.size.value).amax() <= limit
+    };
+    match &bonded.packing {
+        PackingSource::File(file) => {
+            let text = format!("= \"{}\" is a packing with walls", file.name.value);
+            refuse(true, &file.name.place, text, "shape = \"box\", or a file of particles");
+        }
+        PackingSource::Particles { shape: Some(shape), .. } | PackingSource::Shape { shape, .. } => {
+            refuse(!fills(&shape.value), &shape.place, "is not that box: a bonded body fills it".into(), FILLS);
+        }
+        PackingSource::Particles { shape: None, .. } => {}
+    }
+    found
+}
+
 /// Gravity along axes that all repeat.
 pub(super) fn doubts(case: &Case) -> Vec<Diagnostic> {
     let Some(periodic) = case.periodic.as_ref().filter(|own| own.axes == [true; 3]) else { return Vec::new() };
@@ -136,7 +197,8 @@ pub(super) fn cell(case: &Case) -> Option<PeriodicCell> {
 /// The same scene, with its contacts, in the box of the case.
 pub(super) fn with_box(context: &mut Context<'_>, scene: Scene, cell: PeriodicCell) -> Scene {
     let Some(periodic) = &context.case.periodic else { return scene };
-    check_size(context, periodic, &scene.contacts, &cell);
+    let needed = scene.contacts.narrowest_box().max(narrowest_box(&scene.bonded));
+    check_size(context, periodic, needed, &cell);
     let rates = periodic.rates.iter().map(|(at, rate)| (*at, function(&rate.value))).collect();
     let servos = periodic.servo.iter().flat_map(|servo| {
         let of = |(axis, stress): &(usize, crate::Spanned<crate::TimeFunction>)| BoxServo {
@@ -150,14 +212,13 @@ pub(super) fn with_box(context: &mut Context<'_>, scene: Scene, cell: PeriodicCe
     with_periodic_box(scene, cell, BoxStrain { rates, servos: servos.collect() })
 }
 
-fn check_size(context: &mut Context<'_>, periodic: &Periodic, contacts: &Contacts, cell: &PeriodicCell) {
-    let needed = contacts.narrowest_box();
+fn check_size(context: &mut Context<'_>, periodic: &Periodic, needed: f64, cell: &PeriodicCell) {
     if cell.narrowest() >= needed {
         return;
     }
     let short = (0..3).find(|&axis| periodic.axes[axis] && periodic.size.value[axis] < needed).unwrap_or(0);
     let found = format!(
-        "is {} along {}: its particles could touch each other twice",
+        "is {} along {}: its particles could meet each other twice",
         quantity(periodic.size.value[short], "m"),
         AXES[short]
     );

@@ -206,10 +206,12 @@ fn check_particle_sets(context: &mut Context<'_>) {
 
 /// Notes a set that a body of particles does not have.
 pub(super) fn unknown_set(context: &mut Context<'_>, group: &Spanned<String>, body: &str, set: &str, known: &[&str]) {
-    let list: Vec<String> = known.iter().map(|set| format!("{body}.{set}")).collect();
+    let list: String = known.iter().map(|set| format!(", {body}.{set}")).collect();
     let mut diagnostic = Diagnostic::error(&group.place, format!("= \"{}\"", group.value))
-        .expected(format!("a set of particles of \"{body}\": {body}, {}", list.join(", ")));
-    if let Some(near) = nearest(set, known.iter().copied()) {
+        .expected(format!("a set of particles of \"{body}\": {body}{list}"));
+    if context.case.periodic.is_some() && fractum_pack::Domain::BOX_WALLS.contains(&set) {
+        diagnostic = diagnostic.remedy("without walls in its periodic box, a body has the sets of bodies[].groups");
+    } else if let Some(near) = nearest(set, known.iter().copied()) {
         diagnostic = diagnostic.remedy(format!("did you mean \"{body}.{near}\"?"));
     }
     context.diagnostics.push(diagnostic);

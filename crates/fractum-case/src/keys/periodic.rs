@@ -6,10 +6,10 @@ use crate::unit::Dimension as D;
 
 #[rustfmt::skip] // one key per line reads as a table
 pub(super) static KEYS: &[KeyDoc] = &[
-    key("periodic", K::Table, "", "A box that repeats in space: loose particles meet through its sides. Explicit runs with loose particles, and rigid planes across the axes that do not repeat"),
+    key("periodic", K::Table, "", "A box that repeats in space: loose particles meet through its sides, or one bonded body goes on through them. Explicit runs; beside loose particles also rigid planes across the axes that do not repeat"),
     key("periodic.point", K::Point(D::LENGTH), "[0, 0, 0]", "Corner of the box with the smallest coordinates"),
-    key("periodic.size", K::Point(D::LENGTH), "required", "Edges of the box along x, y and z, > 0. Edges along which it repeats must be longer than 2.2 diameters of the largest particle"),
-    key("periodic.axes", K::Names, "[\"x\", \"y\", \"z\"]", "Axes along which the box repeats; along the others it only has the volume that stress and solid fraction are related to"),
+    key("periodic.size", K::Point(D::LENGTH), "required", "Edges of the box along x, y and z, > 0. Edges along which it repeats must be longer than 2.2 diameters of the largest particle; beside a bonded body than two of its bonds, and than 5 mean diameters where particles are packed"),
+    key("periodic.axes", K::Names, "[\"x\", \"y\", \"z\"]", "Axes along which the box repeats, all of them beside a bonded body; along the others it only has the volume that stress and solid fraction are related to"),
     key("periodic.strain_rate", K::Table, "", "Rates at which the box deforms: gradient of velocity of its present shape. xx + yy + zz = 0 keeps its volume; a constant xx changes the length along x by e in 1/xx. Particles start with the mean flow of the box, beside the initial_velocity of their bodies"),
     key("periodic.strain_rate.xx", K::TimeFunction(D::RATE), "", "∂v_x/∂x: stretch along x; negative is compression"),
     key("periodic.strain_rate.yy", K::TimeFunction(D::RATE), "", "∂v_y/∂y: stretch along y"),

@@ -40,7 +40,7 @@ impl Measure for PeriodicBox {
     const KEY: &'static str = "periodic_box";
     #[rustfmt::skip] // a table reads best with one row per line
     const KEYS: &'static [KeyDoc] = &[
-        key("probes[].periodic_box", K::Choice(names::<BoxMeasure>), "", "A number about the periodic box. stress_: stress of the contacts and of the motion against the mean flow over its volume, tension positive; kinetic_stress_: the part of the motion alone; pressure: -(xx + yy + zz)/3; solid_fraction: volume of the particles over that of the box; coordination: contacts per particle, 2 contacts over particles; volume; strain_: change of length since the start over the length, or shear, in strain_xy the way along x over the height along y"),
+        key("probes[].periodic_box", K::Choice(names::<BoxMeasure>), "", "A number about the periodic box. stress_: stress of the contacts, the bonds and the motion against the mean flow over its volume, tension positive; kinetic_stress_: the part of the motion alone; pressure: -(xx + yy + zz)/3; solid_fraction: volume of the particles over that of the box; coordination: contacts and bonds per particle, twice their number over particles; volume; strain_: change of length since the start over the length, or shear, in strain_xy the way along x over the height along y"),
     ];
 
     fn read(probe: &Table<'_>) -> Option<(Self, D)> {

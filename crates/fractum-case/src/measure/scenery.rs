@@ -216,9 +216,12 @@ fn elements_within(solid: &Solid, condition: &Field, of_all: bool) -> Vec<Vec<bo
 /// Which bonds of bodies that may break fulfil a condition at their middles, body by body.
 fn bonds_within(bonded: &Bonded, condition: &Field) -> Vec<Vec<bool>> {
     let place = bonded.reference();
-    let holds = |&[i, j]: &[u32; 2]| condition.holds_at((place[i as usize] + place[j as usize]) * 0.5);
     let body = |body: &BondedBody| {
-        if body.can_break() { body.bonds.pairs().iter().map(holds).collect() } else { Vec::new() }
+        let holds = |bond: usize| {
+            let [from, to] = body.bonds.ends(bond, place);
+            condition.holds_at((from + to) * 0.5)
+        };
+        if body.can_break() { (0..body.bonds.len()).map(holds).collect() } else { Vec::new() }
     };
     bonded.bodies().iter().map(body).collect()
 }

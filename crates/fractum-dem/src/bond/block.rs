@@ -6,6 +6,7 @@ use fractum_kernels::bond::{BondEnergy, BondLanes, BondLaw, ForceLanes};
 use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot};
 use fractum_math::{Rotation, Vec3, widest};
 
+use super::images::BlockThroughBox;
 use super::loads::{LoadLanes, load_sizes};
 use super::mean_strain::MeanStrain;
 
@@ -47,6 +48,8 @@ pub(super) struct Block<L: BondLaw> {
     pub(super) shares: Vec<[f64; 6]>,
     /// Sums that other blocks hold for particles of this one: (block, slot, own particle).
     pub(super) incoming: Vec<(u32, u32, u32)>,
+    /// Bonds through the sides of a box that repeats.
+    pub(super) through: Option<Box<BlockThroughBox>>,
 }
 
 /// `WIDTH` bonds; unused lanes repeat a bond with `live` = 0.
@@ -121,6 +124,7 @@ impl<L: BondLaw> Block<L> {
             loads: Vec::new(),
             shares,
             incoming,
+            through: None,
         }
     }
 
@@ -159,7 +163,8 @@ impl<L: BondLaw> Block<L> {
     #[inline(always)]
     fn sum_wanted(&mut self, position: &[Vec3], orientation: &[Rotation], law: &L, forces: bool, detail: u8) {
         debug_assert!(self.start + self.count <= position.len());
-        let Block { groups, memory, separated, sums, virials, virial_bounds, loads, .. } = self;
+        let Block { groups, memory, separated, sums, virials, virial_bounds, loads, through, .. } = self;
+        let mut through = through.as_deref_mut();
         if forces {
             sums.fill([0.0; 6]);
         }
@@ -176,8 +181,12 @@ impl<L: BondLaw> Block<L> {
         if detail == BOUNDS {
             virial_bounds.fill([0.0; 2]);
         }
+        through.iter_mut().for_each(|through| through.clear());
         for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
-            let bonds = group.lanes(position, orientation);
+            let mut bonds = group.lanes(position, orientation);
+            if let Some(through) = &through {
+                to_images(&through.offsets[index], &mut bonds);
+            }
             let before = L::separated(&group.recent);
             let found = law.forces(&bonds, &group.own, &mut group.recent, memory);
             let fresh = L::separated(&group.recent) & !before;
@@ -187,6 +196,9 @@ impl<L: BondLaw> Block<L> {
             }
             if forces {
                 add_forces(&group.slots, &found, sums);
+            }
+            if let Some(through) = &mut through {
+                through.add(index, &bonds.gap, &found.force);
             }
             if detail == LOADS {
                 loads[index] = load_sizes(bonds.gap, &found);
@@ -264,8 +276,11 @@ impl<L: BondLaw> Block<L> {
         field: Option<&MeanStrain>,
     ) -> BondEnergy {
         let mut sums = [Lanes::<WIDTH>::splat(0.0); 3];
-        for (group, memory) in self.groups.iter().zip(&self.memory) {
-            let bonds = group.lanes(position, orientation);
+        for (index, (group, memory)) in self.groups.iter().zip(&self.memory).enumerate() {
+            let mut bonds = group.lanes(position, orientation);
+            if let Some(through) = &self.through {
+                to_images(&through.offsets[index], &mut bonds);
+            }
             let energies = match field {
                 None => law.energies(&bonds, &group.own, &group.recent, memory),
                 Some(field) => {
@@ -333,6 +348,14 @@ impl<L: BondLaw> Group<L> {
             inverse: Lanes(self.inverse),
             live: Lanes(self.live),
         }
+    }
+}
+
+/// Takes the second particles of bonds to the images that these join.
+#[inline(always)]
+fn to_images(offsets: &[[f64; WIDTH]; 3], bonds: &mut BondLanes<WIDTH>) {
+    for (gap, offset) in bonds.gap.iter_mut().zip(offsets) {
+        *gap = *gap + Lanes(*offset);
     }
 }
 

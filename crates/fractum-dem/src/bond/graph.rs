@@ -117,9 +117,14 @@ impl BondGraph {
     }
 
     /// Whether a bond joins these particles or did before it broke.
-    pub fn were_bonded(&self, [i, j]: [u32; 2]) -> bool {
+    pub fn were_bonded(&self, pair: [u32; 2]) -> bool {
+        self.bond_between(pair).is_some()
+    }
+
+    /// The bond that joins these particles or did before it broke.
+    pub fn bond_between(&self, [i, j]: [u32; 2]) -> Option<u32> {
         let row = self.offsets[i as usize] as usize..self.offsets[i as usize + 1] as usize;
-        self.half[row].iter().any(|h| h.other == j)
+        self.half[row].iter().find(|half| half.other == j).map(|half| half.bond)
     }
 
     /// The bonds of a particle that hold, in the order of their numbers.

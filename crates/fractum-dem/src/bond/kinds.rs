@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use fractum_contact::{Image, PeriodicCell};
 use fractum_kernels::bond::{BeamSection, BondEnergy, BondForces, BondLaw, LocalBond, Separation};
-use fractum_math::{Sym3, Vec3};
+use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::graph::BondGraph;
 use super::loads::{LoadLanes, LoadSizes};
 use super::network::BondNetwork;
+use super::through_box;
 use crate::DemError;
 use crate::particles::{ParticleSubdomain, Particles};
 
@@ -72,9 +74,23 @@ macro_rules! laws {
                 shares: &[f64],
                 law: impl Into<AnyBondLaw>,
             ) -> Result<Self, DemError> {
+                Self::within(particles, pairs, shares, law, None)
+            }
+
+            /// See [`BondNetwork::within`].
+            ///
+            /// # Errors
+            /// As [`Bonds::with_shares`].
+            pub fn within(
+                particles: &Particles,
+                pairs: &[[u32; 2]],
+                shares: &[f64],
+                law: impl Into<AnyBondLaw>,
+                cell: Option<&PeriodicCell>,
+            ) -> Result<Self, DemError> {
                 Ok(match law.into() {
                     $(AnyBondLaw::$name(law) => {
-                        Bonds::$name(BondNetwork::with_shares(particles, pairs, shares, law)?)
+                        Bonds::$name(BondNetwork::within(particles, pairs, shares, law, cell)?)
                     })*
                 })
             }
@@ -131,6 +147,32 @@ impl Bonds {
     /// Whether a bond still holds.
     pub fn is_live(&self, bond: usize) -> bool {
         each!(self, network => network.is_live(bond))
+    }
+
+    /// Takes the box as it is now; without effect on bonds that are in none.
+    pub fn set_cell(&mut self, cell: &PeriodicCell) {
+        each!(self, network => through_box::set_cell(network, cell));
+    }
+
+    /// The box in which the bonds repeat, with the images of the second particles that they join the first ones to.
+    pub fn through_box(&self) -> Option<(&PeriodicCell, &[Image])> {
+        each!(self, network => through_box::through_box(network))
+    }
+
+    /// From the first particle of a bond to the second, or to the image that it is bonded to [m].
+    pub fn gap(&self, bond: usize, particles: &Particles) -> Vec3 {
+        each!(self, network => through_box::gap(network, bond, particles))
+    }
+
+    /// The ends of a bond by places in the undeformed body, the second one where the image is that it joins [m].
+    pub fn ends(&self, bond: usize, reference: &[Vec3]) -> [Vec3; 2] {
+        each!(self, network => through_box::ends(network, bond, reference))
+    }
+
+    /// Sums over the bonds at the last pass, with forces f on the second particles [N]: Σ f ⊗ n with the edges n of the box between a
+    /// particle and its image [N], and Σ f ⊗ r with the gaps r [N m]; none without such a box.
+    pub fn sums_through_box(&self) -> Option<[Mat3; 2]> {
+        each!(self, network => through_box::sums(network))
     }
 
     /// Distance of the particles of a bond without load [m].

@@ -3,6 +3,7 @@
 mod block;
 mod distributed;
 mod graph;
+mod images;
 mod kept_loads;
 mod kinds;
 mod loads;
@@ -14,6 +15,7 @@ mod separating;
 mod softening_spring;
 mod space_cells;
 mod subdomain;
+mod through_box;
 
 pub use fractum_kernels::bond::{
     BadLaw, BeamSection, BondEnergy, BondForces, BondLanes, BondLaw, BondStiffness, BondedPair, Crushing,

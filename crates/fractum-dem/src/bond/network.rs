@@ -1,5 +1,6 @@
 use std::ops::Add;
 
+use fractum_contact::PeriodicCell;
 use fractum_kernels::bond::{BondEnergy, BondForces, BondLaw, BondStiffness, BondedPair, Separation};
 use fractum_kernels::lanes::WIDTH;
 use fractum_math::{Sym3, Vec3};
@@ -9,6 +10,7 @@ use rayon::prelude::*;
 
 use super::block::{BOUNDS, Block, Made, NOTHING, VIRIALS, sum_energies};
 use super::graph::{BondGraph, check_pairs, check_shares};
+use super::images::{BlockThroughBox, ThroughBox};
 use super::mean_strain::{MeanStrain, Separating};
 use super::subdomain::BondSubdomain;
 use crate::DemError;
@@ -39,6 +41,8 @@ pub struct BondNetwork<L: BondLaw> {
     pub(super) separating: Separating,
     /// The blocks of this process, where several share the bonds.
     pub(super) part: Option<Box<BondSubdomain>>,
+    /// The images that bonds join, in a box that repeats.
+    pub(super) through: Option<Box<ThroughBox>>,
 }
 
 impl<L: BondLaw> BondNetwork<L> {
@@ -59,13 +63,37 @@ impl<L: BondLaw> BondNetwork<L> {
     /// # Errors
     /// As [`BondNetwork::new`]; another number of factors than of bonds.
     pub fn with_shares(particles: &Particles, pairs: &[[u32; 2]], shares: &[f64], law: L) -> Result<Self, DemError> {
+        Self::within(particles, pairs, shares, law, None)
+    }
+
+    /// [`BondNetwork::with_shares`] in a box that repeats: bonds join the nearest images.
+    ///
+    /// - `cell`: the box; its sides are apart by more than twice the longest bond
+    ///
+    /// # Errors
+    /// As [`BondNetwork::with_shares`].
+    pub fn within(
+        particles: &Particles,
+        pairs: &[[u32; 2]],
+        shares: &[f64],
+        law: L,
+        cell: Option<&PeriodicCell>,
+    ) -> Result<Self, DemError> {
         law.check()?;
         let (pairs, shares) = sorted(particles, pairs, shares)?;
         let position = &particles.position;
         let count = position.len();
-        let gap = |p: &[u32; 2]| position[p[1] as usize] - position[p[0] as usize];
-        let length: Vec<f64> = pairs.iter().map(|p| gap(p).norm()).collect();
-        let axis: Vec<Vec3> = pairs.iter().zip(&length).map(|(p, l)| gap(p) / *l).collect();
+        let between = |p: &[u32; 2]| position[p[1] as usize] - position[p[0] as usize];
+        let image = |cell: &PeriodicCell| pairs.iter().map(|pair| cell.nearest_image(&between(pair))).collect();
+        let through = cell.map(|cell| ThroughBox { cell: *cell, start: *cell, images: image(cell) });
+        let gaps: Vec<Vec3> = match &through {
+            None => pairs.iter().map(between).collect(),
+            Some(ThroughBox { cell, images, .. }) => {
+                pairs.iter().zip(images).map(|(pair, image)| between(pair) + cell.offset(image)).collect()
+            }
+        };
+        let length: Vec<f64> = gaps.iter().map(|gap| gap.norm()).collect();
+        let axis: Vec<Vec3> = gaps.iter().zip(&length).map(|(gap, l)| gap / *l).collect();
         let own: Vec<L::Parameters> = pairs
             .iter()
             .zip(length.iter().zip(&shares))
@@ -100,7 +128,14 @@ impl<L: BondLaw> BondNetwork<L> {
             None => None,
         };
         let separating = Separating::default();
-        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating, part: None })
+        let through = through.map(Box::new);
+        if let Some(through) = &through {
+            for block in &mut blocks {
+                let (first, count) = (block.first_bond as usize, block.bonds);
+                block.through = Some(Box::new(BlockThroughBox::new(through, block.groups.len(), first, count)));
+            }
+        }
+        Ok(BondNetwork { law, pairs, axis, length, own, live, blocks, index, mean, separating, part: None, through })
     }
 
     /// Number of bonds, broken ones included.
@@ -334,12 +369,12 @@ impl<L: BondLaw> BondNetwork<L> {
     #[inline]
     pub(super) fn pair(&self, bond: usize, particles: &Particles) -> BondedPair {
         let ends = self.pairs[bond].map(|i| i as usize);
-        BondedPair {
-            position: ends.map(|i| particles.position[i]),
-            rotation: ends.map(|i| particles.orientation[i]),
-            axis: self.axis[bond],
-            length: self.length[bond],
+        let mut position = ends.map(|i| particles.position[i]);
+        if let Some(through) = &self.through {
+            position[1] += through.offset(bond);
         }
+        let rotation = ends.map(|i| particles.orientation[i]);
+        BondedPair { position, rotation, axis: self.axis[bond], length: self.length[bond] }
     }
 
     /// Distance of the particles of a bond without load [m].
@@ -391,7 +426,8 @@ impl<L: BondLaw> BondNetwork<L> {
         let mut own = vec![Matrix6::<f64>::zeros(); particles.len()];
         for bond in (0..self.len()).filter(|&b| self.live[b]) {
             let [i, j] = self.pairs[bond].map(|i| i as usize);
-            let n = (particles.position[j] - particles.position[i]).normalize();
+            let [first, second] = self.pair(bond, particles).position;
+            let n = (second - first).normalize();
             let (length, stiffness) = (self.length[bond], self.law.stiffness(self.length[bond], &self.own[bond]));
             add_stiffness(&mut own[i], &n, length, &stiffness);
             add_stiffness(&mut own[j], &-n, length, &stiffness);

@@ -40,24 +40,22 @@ pub struct Occasion {
 }
 
 impl Crack {
-    /// A bond between the particles of `pair`, which lie at `reference` in the undeformed body [m], breaks.
+    /// A bond between the particles of `pair`, which lie at `ends` in the undeformed body [m], breaks.
     pub(crate) fn new(
         bond: u32,
         pair: [u32; 2],
-        reference: &[Vec3],
+        [a, b]: [Vec3; 2],
         area: f64,
         mode: BreakMode,
         energy: f64,
         Occasion { time, event, load }: Occasion,
     ) -> Self {
-        let [a, b] = pair.map(|i| reference[i as usize]);
         let (position, normal) = ((a + b) * 0.5, (b - a).normalize());
         Crack { bond, pair, event, time, load, position, normal, area, mode, energy }
     }
 }
 
 /// Facet area of every bond: bonds and facets fill the body, V = Σ A l/3.
-pub(crate) fn facet_area(volume: f64, position: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
-    let length: f64 = pairs.iter().map(|p| (position[p[1] as usize] - position[p[0] as usize]).norm()).sum();
-    3.0 * volume / length
+pub(crate) fn facet_area(volume: f64, lengths: impl Iterator<Item = f64>) -> f64 {
+    3.0 * volume / lengths.sum::<f64>()
 }

@@ -1,6 +1,7 @@
 //! Contact of what bonds held, and of what they never held.
 
 use fractum_contact::law::{ContactMemory, ContactParameters, Linear, PairMotion, Rolling};
+use fractum_contact::{Image, PeriodicCell};
 use fractum_math::{Vec3, Work};
 use serde::{Deserialize, Serialize};
 
@@ -42,6 +43,8 @@ pub struct FaceWork {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Face {
     pub(crate) pair: [u32; 2],
+    /// Image of the second particle that the first touches, in a box that repeats.
+    pub(crate) image: Image,
     /// Whether there never was a bond.
     pub(crate) stranger: bool,
     /// Length of the bond without load, or sum of the radii [m].
@@ -57,11 +60,12 @@ pub(crate) struct Face {
 impl Face {
     /// Two particles as they stand: they give no force yet.
     ///
+    /// - `pair`: the particles, and the image of the second one
     /// - `rest` [m]: the distance at which they touch, once they have parted as far
     pub(crate) fn new(
         bonds: &Bonds,
         particles: &Particles,
-        pair: [u32; 2],
+        (pair, image): ([u32; 2], Image),
         rest: f64,
         faces: CrackFaces,
         stranger: bool,
@@ -76,9 +80,11 @@ impl Face {
             friction: faces.friction,
             rolling: Rolling::default(),
         };
-        let distance = (particles.position[j] - particles.position[i]).norm();
+        let cell = bonds.through_box().map(|(cell, _)| cell);
+        let distance = apart(particles, pair, &image, cell).norm();
         Face {
             pair,
+            image,
             stranger,
             rest,
             closing: rest.min(distance),
@@ -89,23 +95,32 @@ impl Face {
     }
 
     /// Distance between the surfaces, negative where they overlap [m].
-    pub(crate) fn gap(&self, particles: &Particles) -> f64 {
-        let [i, j] = self.pair.map(|i| i as usize);
-        (particles.position[j] - particles.position[i]).norm() - self.rest
+    pub(crate) fn gap(&self, particles: &Particles, cell: Option<&PeriodicCell>) -> f64 {
+        self.apart(particles, cell).norm() - self.rest
     }
 
     /// Whether both touch.
-    pub(crate) fn is_loaded(&self, particles: &Particles) -> bool {
-        let [i, j] = self.pair.map(|i| i as usize);
-        (particles.position[j] - particles.position[i]).norm() < self.closing
+    pub(crate) fn is_loaded(&self, particles: &Particles, cell: Option<&PeriodicCell>) -> bool {
+        self.apart(particles, cell).norm() < self.closing
+    }
+
+    /// From the first particle to the second, or to its image in the box that repeats [m].
+    pub(crate) fn apart(&self, particles: &Particles, cell: Option<&PeriodicCell>) -> Vec3 {
+        apart(particles, self.pair, &self.image, cell)
     }
 
     /// Force of the moment on the second particle [N] and moment on both [N m]; none where they are far apart. `dt` is the step that led
     /// here [s].
-    pub(crate) fn force(&mut self, particles: &Particles, dt: f64, work: &mut FaceWork) -> Option<[Vec3; 2]> {
-        let Particles { position, velocity, spin, .. } = particles;
+    pub(crate) fn force(
+        &mut self,
+        particles: &Particles,
+        cell: Option<&PeriodicCell>,
+        dt: f64,
+        work: &mut FaceWork,
+    ) -> Option<[Vec3; 2]> {
+        let Particles { velocity, spin, .. } = particles;
         let [i, j] = self.pair.map(|i| i as usize);
-        let apart = position[j] - position[i];
+        let apart = self.apart(particles, cell);
         let distance = apart.norm();
         let overlap = self.closing - distance;
         // The trapezoid of the forces over the step against the change of the spring: not the same across the kink.
@@ -123,11 +138,20 @@ impl Face {
         let normal = apart / distance;
         let arm = 0.5 * distance;
         let turning = (spin[i] + spin[j]).cross(&normal) * arm;
-        let motion =
-            PairMotion { normal, overlap, velocity: velocity[j] - velocity[i] - turning, spin: spin[j] - spin[i], dt };
+        let mut velocity = velocity[j] - velocity[i] - turning;
+        if let Some(cell) = cell {
+            velocity += cell.velocity_of(&self.image);
+        }
+        let motion = PairMotion { normal, overlap, velocity, spin: spin[j] - spin[i], dt };
         let found = self.law.force(&motion, &mut self.memory);
         let twist = normal.cross(&found.on_second) * -arm;
         work.contact += found.work();
         Some([found.on_second, twist])
     }
+}
+
+fn apart(particles: &Particles, pair: [u32; 2], image: &Image, cell: Option<&PeriodicCell>) -> Vec3 {
+    let [i, j] = pair.map(|i| i as usize);
+    let apart = particles.position[j] - particles.position[i];
+    cell.map_or(apart, |cell| apart + cell.offset(image))
 }

@@ -1,6 +1,7 @@
 //! Bonds that break in motion, and the contact of what they held.
 
-use fractum_math::{Sym3, Vec3};
+use fractum_contact::{Image, PeriodicCell};
+use fractum_math::{Mat3, Sym3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::crack::{Crack, Occasion, facet_area};
@@ -40,6 +41,21 @@ pub struct Fracture {
     detail: Detail,
     /// Steps for which whole virials are summed with the forces, since their bounds did not suffice.
     steps_with_tensor: u32,
+    /// The box through whose sides the body goes on, where it repeats.
+    pub(super) through: Option<Box<FractureThroughBox>>,
+}
+
+/// What bonds and faces of a body do through the sides of a box that repeats.
+#[derive(Clone, Debug)]
+pub(super) struct FractureThroughBox {
+    /// The box without load.
+    start: PeriodicCell,
+    /// The box now.
+    pub(super) cell: PeriodicCell,
+    /// Image of the second particle of each bond that the first was bonded to.
+    pub(super) images: Vec<Image>,
+    /// Sums of the forces of faces at the last step, as [`Bonds::sums_through_box`] has them.
+    pub(super) sums: [Mat3; 2],
 }
 
 /// What is kept with the forces: nothing, what every bond bears, or sums of virials.
@@ -91,8 +107,7 @@ impl LoadedBonds for Moving<'_> {
     }
 
     fn axis(&self, bond: u32) -> Vec3 {
-        let [i, j] = self.bonds.pairs()[bond as usize].map(|i| i as usize);
-        (self.particles.position[j] - self.particles.position[i]).normalize()
+        self.bonds.gap(bond as usize, self.particles).normalize()
     }
 }
 
@@ -123,8 +138,8 @@ impl Fracture {
         }
         let graph = BondGraph::new(particles.len(), bonds.pairs());
         let search = FailureSearch::new(criterion, &graph, &particles.radius, fraction)?;
-        let area = facet_area(volume, &particles.position, bonds.pairs());
-        Ok(Fracture::with_search(graph, Some(search), particles, faces, area))
+        let area = facet_area(volume, (0..bonds.len()).map(|bond| bonds.length(bond)));
+        Ok(Fracture::with_search(graph, Some(search), (bonds, particles), faces, area))
     }
 
     /// The same with strengths of their own for particles.
@@ -148,11 +163,16 @@ impl Fracture {
     pub(super) fn with_search(
         graph: BondGraph,
         search: Option<FailureSearch>,
-        particles: &Particles,
+        (bonds, particles): (&Bonds, &Particles),
         faces: CrackFaces,
         area: f64,
     ) -> Self {
+        let through = bonds.through_box().map(|(cell, images)| {
+            let sums = [Mat3::zeros(); 2];
+            Box::new(FractureThroughBox { start: *cell, cell: *cell, images: images.to_vec(), sums })
+        });
         Fracture {
+            through,
             graph,
             search,
             reference: particles.position.clone(),
@@ -230,10 +250,29 @@ impl Fracture {
         match self.search.as_ref().and_then(|search| search.criterion().level()) {
             Some(_) => position[site.index as usize],
             None => {
-                let [i, j] = self.graph.pairs()[site.index as usize].map(|i| position[i as usize]);
+                let [i, j] = self.ends(site.index, position);
                 (i + j) * 0.5
             }
         }
+    }
+
+    /// The ends of a bond, by places in the undeformed body [m].
+    pub(super) fn ends(&self, bond: u32, position: &[Vec3]) -> [Vec3; 2] {
+        let [first, mut second] = self.graph.pairs()[bond as usize].map(|i| position[i as usize]);
+        if let Some(through) = &self.through {
+            second += through.start.offset(&through.images[bond as usize]);
+        }
+        [first, second]
+    }
+
+    /// Takes the box as it is now; without effect on a body that is in none.
+    pub fn set_cell(&mut self, cell: &PeriodicCell) {
+        self.through.iter_mut().for_each(|through| through.cell = *cell);
+    }
+
+    /// Sums over the faces that touched at the last step, as [`Bonds::sums_through_box`] has them.
+    pub fn sums_through_box(&self) -> Option<[Mat3; 2]> {
+        self.through.as_ref().map(|through| through.sums)
     }
 
     /// Breaks what fails: for every overloaded site what it releases. Returns the number of bonds.
@@ -287,11 +326,13 @@ impl Fracture {
             self.acting.push((self.cracks.len(), bonds.forces_of(bond as usize, particles)));
             let pair = bonds.pairs()[bond as usize];
             let rest = bonds.length(bond as usize);
-            self.pairs.push(Face::new(bonds, particles, pair, rest, self.faces, false));
+            let face = (pair, self.image_of(bond));
+            self.pairs.push(Face::new(bonds, particles, face, rest, self.faces, false));
             bonds.break_bond(bond as usize);
             self.search.iter_mut().for_each(|search| search.bond_broken(bond, &self.graph));
             self.released += energy;
-            self.cracks.push(Crack::new(bond, pair, &self.reference, self.area, mode, energy, occasion));
+            let ends = self.ends(bond, &self.reference);
+            self.cracks.push(Crack::new(bond, pair, ends, self.area, mode, energy, occasion));
         }
         self.cracks.len() - before
     }
@@ -306,12 +347,24 @@ impl Fracture {
         let powers = part.map(|part| self.gather_powers(part, &acting, particles));
         for (k, (crack, forces)) in acting.iter().enumerate() {
             let crack = &mut self.cracks[*crack];
-            let power = powers.as_ref().map_or_else(|| power_of(forces, crack.pair, particles), |powers| powers[k]);
+            let through = self.through.as_ref();
+            let power = powers.as_ref().map_or_else(
+                || {
+                    let of_image = through.map(|own| own.cell.velocity_of(&own.images[crack.bond as usize]));
+                    power_of(forces, crack.pair, particles) + of_image.map_or(0.0, |v| forces.force.dot(&v))
+                },
+                |powers| powers[k],
+            );
             crack.energy -= 0.5 * dt * power;
             self.released -= 0.5 * dt * power;
         }
         acting.clear();
         self.acting = acting;
+    }
+
+    /// The image of the second particle of a bond that the first is bonded to.
+    fn image_of(&self, bond: u32) -> Image {
+        self.through.as_ref().map_or([0; 3], |through| through.images[bond as usize])
     }
 
     /// Takes over bonds that broke at rest, which leave no faces in contact.

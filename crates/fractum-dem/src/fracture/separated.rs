@@ -14,8 +14,8 @@ impl Fracture {
     /// - `volume`: of the body [m³]
     pub fn of_law(bonds: &Bonds, particles: &Particles, faces: CrackFaces, volume: f64) -> Self {
         let graph = BondGraph::new(particles.len(), bonds.pairs());
-        let area = facet_area(volume, &particles.position, bonds.pairs());
-        Fracture::with_search(graph, None, particles, faces, area)
+        let area = facet_area(volume, (0..bonds.len()).map(|bond| bonds.length(bond)));
+        Fracture::with_search(graph, None, (bonds, particles), faces, area)
     }
 
     /// Whether bonds separate by their law, and stay as contacts.
@@ -37,7 +37,7 @@ impl Fracture {
                 Separation::Shear => BreakMode::Shear,
             };
             // What the bond held is part of what its law has dissipated.
-            self.cracks.push(Crack::new(bond, pair, &self.reference, self.area, mode, 0.0, occasion));
+            self.cracks.push(Crack::new(bond, pair, self.ends(bond, &self.reference), self.area, mode, 0.0, occasion));
         }
         let count = separated.len();
         self.separated = separated;

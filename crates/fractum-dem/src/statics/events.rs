@@ -183,7 +183,11 @@ impl QuasiStatic {
         let mut search = FailureSearch::new(what.criterion, &graph, what.radius, what.fraction)?;
         search.set_strength_factors(what.strength_factors, &graph);
         search.read_at_walls(lattice.position(), what.to_wall, &graph);
-        let area = facet_area(what.volume, lattice.position(), what.pairs);
+        let length = |pair: &[u32; 2]| {
+            let [first, second] = pair.map(|i| lattice.position()[i as usize]);
+            (second - first).norm()
+        };
+        let area = facet_area(what.volume, what.pairs.iter().map(length));
         let constant = match constant {
             [] => None,
             loads => {
@@ -441,8 +445,8 @@ impl QuasiStatic {
             if graph.break_bond(bond) {
                 let pair = graph.pairs()[bond as usize];
                 let occasion = Occasion { time: progress.factor, event: progress.event, load };
-                let reference = body.lattice().position();
-                progress.cracks.push(Crack::new(bond, pair, reference, *area, mode, energy, occasion));
+                let ends = pair.map(|i| body.lattice().position()[i as usize]);
+                progress.cracks.push(Crack::new(bond, pair, ends, *area, mode, energy, occasion));
                 body.break_bond(bond);
                 constant.iter_mut().for_each(|constant| constant.body.break_bond(bond));
                 search.bond_broken(bond, graph);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use fractum_math::largest_eigenvalue;
+use fractum_math::{Vec3, largest_eigenvalue};
 use nalgebra::Vector6;
 
 use super::Lattice;
@@ -28,7 +28,13 @@ pub fn highest_frequency(bonds: &Bonds, particles: &Particles, range: Range<usiz
     let position = &particles.position[range.clone()];
     // Rotations times this length have the inertia of a displacement of the largest particle.
     let scale = particles.radius[range.clone()].iter().copied().fold(0.0, f64::max);
-    let lattice = Lattice::new(position, &pairs, section, scale)?;
+    let lattice = match bonds.through_box() {
+        None => Lattice::new(position, &pairs, section, scale)?,
+        Some((cell, _)) => {
+            let nearest = |apart: Vec3| apart + cell.offset(&cell.nearest_image(&apart));
+            Lattice::between(position, &pairs, &[], section, scale, &nearest)?
+        }
+    };
     let root = |i: usize| {
         let (mass, inertia) = (particles.mass[range.start + i], particles.inertia[range.start + i]);
         (1.0 / mass.sqrt(), scale / inertia.sqrt())

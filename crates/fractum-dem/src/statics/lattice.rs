@@ -1,6 +1,6 @@
 //! The beam lattice in static equilibrium: one sparse solve instead of many time steps.
 
-use fractum_math::Vec3;
+use fractum_math::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::DemError;
@@ -127,6 +127,23 @@ impl Lattice {
         section: BeamSection,
         scale: f64,
     ) -> Result<Self, DemError> {
+        Self::between(position, pairs, shares, section, scale, &|apart| apart)
+    }
+
+    /// [`Lattice::with_shares`] whose beams join images of particles.
+    ///
+    /// - `nearest`: from the vector between two centres to that between the first one and the image of the second [m]
+    ///
+    /// # Errors
+    /// As [`Lattice::with_shares`].
+    pub fn between(
+        position: &[Vec3],
+        pairs: &[[u32; 2]],
+        shares: &[f64],
+        section: BeamSection,
+        scale: f64,
+        nearest: &dyn Fn(Vec3) -> Vec3,
+    ) -> Result<Self, DemError> {
         section.check()?;
         check_shares(pairs, shares)?;
         let count = position.len();
@@ -143,7 +160,7 @@ impl Lattice {
         let mut ends = vec![HalfBond { other: 0, bond: 0, axis: [0.0; 3], inverse: 0.0, share: 1.0 }; 2 * pairs.len()];
         let mut halves = Vec::with_capacity(pairs.len());
         for (bond, &[first, second]) in pairs.iter().enumerate() {
-            let d = position[second as usize] - position[first as usize];
+            let d = nearest(position[second as usize] - position[first as usize]);
             let length = d.norm();
             let share = shares.get(bond).copied().unwrap_or(1.0);
             halves.push([(first, second, 1.0), (second, first, -1.0)].map(|(own, other, sign)| {
@@ -205,6 +222,40 @@ impl Lattice {
         self.apply(&scaled, &free, &mut force);
         force.iter_mut().for_each(|f| *f = self.rescale(f, self.scale));
         force
+    }
+
+    /// Internal forces [N] and moments [N m] where all beams have a uniform gradient of displacement, and no particle turns.
+    pub fn internal_of_gradient(&self, gradient: &Mat3) -> Vec<Dof6> {
+        let section = self.section;
+        let of = |i: usize| {
+            let mut sum = [Vec3::zeros(); 2];
+            for end in self.ends(i).iter().filter(|end| end.inverse > 0.0) {
+                let n = Vec3::from(end.axis);
+                let way = gradient * n;
+                let along = way.dot(&n);
+                // EA along the beam, 12 EI/l² across it; the way grows with its length.
+                let across = section.bending() * end.inverse * end.inverse * end.share;
+                sum[0] -= n * (section.axial() * end.share * along) + (way - n * along) * (12.0 * across);
+                sum[1] -= n.cross(&way) * (6.0 * across / end.inverse);
+            }
+            let [force, moment] = sum;
+            [force.x, force.y, force.z, moment.x, moment.y, moment.z]
+        };
+        (0..self.len()).into_par_iter().map(of).collect()
+    }
+
+    /// Twice the energy between two uniform gradients of displacement without turning particles [J].
+    pub fn energy_of_gradients(&self, first: &Mat3, second: &Mat3) -> f64 {
+        let section = self.section;
+        let of = |end: &HalfBond| {
+            let n = Vec3::from(end.axis);
+            let (one, other) = (first * n, second * n);
+            let along = one.dot(&n) * other.dot(&n);
+            let across = 12.0 * section.bending() * end.inverse * end.inverse * (one.dot(&other) - along);
+            (section.axial() * along + across) * end.share / end.inverse
+        };
+        // Every beam has two ends.
+        0.5 * self.ends.iter().filter(|end| end.inverse > 0.0).map(of).sum::<f64>()
     }
 
     /// Multiplies the rotational part.

@@ -35,7 +35,7 @@ use crate::atomic::{self, UNFINISHED};
 use crate::error::WriteError;
 
 /// Version of the container's format.
-pub const FORMAT: u32 = 17;
+pub const FORMAT: u32 = 18;
 
 /// What a state belongs to. A state of another program version, case or mesh is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

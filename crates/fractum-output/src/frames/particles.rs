@@ -48,6 +48,8 @@ impl ParticleFiles {
 struct LiveBond {
     pair: [u32; 2],
     body: i32,
+    /// From its first particle to the second, or to the image that it joins [m].
+    gap: Vec3,
     /// Force on its second particle [N].
     force: Vec3,
     /// Elastic energy [J].
@@ -60,6 +62,7 @@ fn live_bonds(scene: &Scene, bodies: &[(i32, &BondedBody)]) -> Vec<LiveBond> {
         let live = |bond: usize| LiveBond {
             pair: part.bonds.pairs()[bond],
             body,
+            gap: part.bonds.gap(bond, all),
             force: part.bonds.forces_of(bond, all).force,
             energy: part.bonds.energy_of(bond, all).total(),
         };
@@ -79,7 +82,7 @@ fn stresses(scene: &Scene, bodies: &[(i32, &BondedBody)], bonds: &[LiveBond]) ->
     let virials: Vec<Sym3> = particle_virials(all.len(), |visit| {
         for bond in bonds {
             let [i, j] = bond.pair.map(|particle| particle as usize);
-            visit(i, j, all.position[j] - all.position[i], -bond.force);
+            visit(i, j, bond.gap, -bond.force);
         }
     });
     let of_body = |(_, body): &(i32, &BondedBody)| {
@@ -150,20 +153,27 @@ pub(crate) fn tensor<'a>(name: &'a str, values: &'a [[f32; 6]]) -> Field<'a> {
     Field { name, components: 6, values: Values::F32(values.as_flattened()) }
 }
 
-/// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy.
+/// Part of a bond that is rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// Bonds that hold as lines between the centres of their particles, with their axial force and elastic energy. In a box that repeats those are
+/// left out that go through its sides.
 fn bonds_file(scene: &Scene, bodies: &[(i32, &BondedBody)], bonds: &[LiveBond]) -> Result<PendingFile, OutputError> {
     let (bonded, all) = (&scene.bonded, &scene.bonded.particles);
     let shown = || bodies.iter().flat_map(|(_, body)| body.range.clone());
     let mut place = vec![0; all.len()];
     (0..).zip(shown()).for_each(|(index, particle)| place[particle] = index);
-    let points = vectors(shown().map(|i| bonded.reference()[i]));
+    let into_box: Vec<Vec3> = shown().map(|i| into_periodic_box(scene, &all.position[i])[0]).collect();
+    let points = vectors(shown().zip(&into_box).map(|(i, beyond)| bonded.reference()[i] + beyond));
     let displacement = vectors(shown().map(|i| all.position[i] - bonded.reference()[i]));
-    let lines: Vec<[u32; 2]> = bonds.iter().map(|bond| bond.pair.map(|particle| place[particle as usize])).collect();
-    let axial = |bond: &LiveBond| {
-        let [first, second] = bond.pair.map(|i| all.position[i as usize]);
-        // The force on the second particle draws it towards the first in tension.
-        -bond.force.dot(&(second - first).normalize())
+    let drawn = |bond: &&LiveBond| {
+        let [first, second] = bond.pair.map(|i| all.position[i as usize] + into_box[place[i as usize] as usize]);
+        (second - first - bond.gap).norm() < ROUNDING * bond.gap.norm()
     };
+    let bonds: Vec<&LiveBond> = bonds.iter().filter(drawn).collect();
+    let lines: Vec<[u32; 2]> = bonds.iter().map(|bond| bond.pair.map(|particle| place[particle as usize])).collect();
+    // The force on the second particle draws it towards the first in tension.
+    let axial = |bond: &&LiveBond| -bond.force.dot(&bond.gap.normalize());
     let force: Vec<f64> = bonds.iter().map(axial).collect();
     let energy: Vec<f64> = bonds.iter().map(|bond| bond.energy).collect();
     let body: Vec<i32> = bonds.iter().map(|bond| bond.body).collect();

@@ -115,7 +115,7 @@ fn check_bonds(packing: &Packing, pairs: &[[u32; 2]]) -> Result<(), Fault> {
     }
     for &[i, j] in pairs {
         let [a, b] = [i, j].map(|i| i as usize);
-        let (length, sum) = ((packing.position[a] - packing.position[b]).norm(), packing.radius[a] + packing.radius[b]);
+        let (length, sum) = (packing.apart([a, b]).norm(), packing.radius[a] + packing.radius[b]);
         if length > LONGEST * sum {
             let length = quantity(length, "m");
             let found = format!(

@@ -12,10 +12,16 @@ impl Bonded {
         let mut sums = vec![[Mat3::zeros(); 2]; self.particles.len()];
         let displacement = |i: usize| self.particles.position[i] - self.reference[i];
         for body in &self.bodies {
-            for (_, pair) in body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.is_joined(*bond)) {
+            let repeats = body.bonds.through_box().is_some();
+            for (bond, pair) in body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.is_joined(*bond)) {
                 let [i, j] = pair.map(|i| i as usize);
-                let way = self.reference[j] - self.reference[i];
-                let parts = [way * way.transpose(), (displacement(j) - displacement(i)) * way.transpose()];
+                let [from, to] = body.bonds.ends(bond, &self.reference);
+                let way = to - from;
+                let moved = match repeats {
+                    true => body.bonds.gap(bond, &self.particles) - way,
+                    false => displacement(j) - displacement(i),
+                };
+                let parts = [way * way.transpose(), moved * way.transpose()];
                 for end in [i, j] {
                     (0..2).for_each(|k| sums[end][k] += parts[k]);
                 }

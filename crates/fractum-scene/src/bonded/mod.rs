@@ -9,9 +9,11 @@ mod piece;
 mod plan;
 mod points;
 mod state;
+mod through_box;
 
 use std::ops::Range;
 
+use fractum_contact::PeriodicCell;
 use fractum_dem::{
     AnyBondLaw, BondEnergy, BondGraph, Bonds, Clumps, Crack, Fracture, Occasion, ParticleDamping, ParticleSubdomain,
     Particles, PastForces, TimeStep,
@@ -27,6 +29,8 @@ use momentum::{energy_of, viscous_power};
 pub use plan::BondFracture;
 use points::ParticlePoints;
 pub use state::BondedState;
+pub use through_box::narrowest_box;
+pub(crate) use through_box::{set_cell, set_cell_velocity, sums_through_box, touching_faces};
 
 /// Steps between two searches for particles of a broken body that meet others of it.
 const STEPS_BETWEEN_SEARCHES: u64 = 20;
@@ -158,6 +162,14 @@ impl Bonded {
     /// # Errors
     /// A beam that is none, or a bond that joins nothing.
     pub fn new(parts: Vec<BondedPart>) -> Result<Self, SceneError> {
+        Self::within(parts, None)
+    }
+
+    /// [`Bonded::new`] in a box that repeats: bonds join the nearest images.
+    ///
+    /// # Errors
+    /// As [`Bonded::new`].
+    pub fn within(parts: Vec<BondedPart>, cell: Option<&PeriodicCell>) -> Result<Self, SceneError> {
         let mut all = Bonded::default();
         let mut plans = Vec::new();
         for part in parts {
@@ -182,7 +194,7 @@ impl Bonded {
         all.reference = all.particles.position.clone();
         all.carried = all.clumps.all_particles().map(|i| i as u32).collect();
         for (name, range, (pairs, shares, law), [density, fraction], mut plan) in plans {
-            let bonds = Bonds::with_shares(&all.particles, &pairs, &shares, law)?;
+            let bonds = Bonds::within(&all.particles, &pairs, &shares, law, cell)?;
             if let Some(plan) = &mut plan {
                 plan.take_place(range.clone(), all.particles.len());
             }

@@ -2,6 +2,7 @@
 
 use fractum_dem::{Piece, pieces};
 
+use super::through_box::whole_pieces;
 use super::{Bonded, BondedBody};
 use crate::fragment::Fragment;
 
@@ -31,7 +32,9 @@ impl Bonded {
 
     /// Pieces connected by bonds that hold, which have not left the run, in the order of their first particles.
     pub fn fragments(&self) -> Vec<Fragment> {
-        let mut found = pieces(&self.particles, self.pairs_of(BondedBody::is_joined), |i| self.own_mass(i));
+        let whole = whole_pieces(self);
+        let all = whole.as_ref().unwrap_or(&self.particles);
+        let mut found = pieces(all, self.pairs_of(BondedBody::is_joined), |i| self.own_mass(i));
         found.retain(|piece| !self.particles.is_out(piece.particles[0] as usize));
         let fragment = |piece: Piece| {
             let Piece { particles, bonds, mass, content, centroid, velocity, bounds } = piece;

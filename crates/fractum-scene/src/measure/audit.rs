@@ -1,7 +1,6 @@
 //! Looks at the state of a scene: is the theory still valid?
 
 use fractum_fem::{Extreme, Extremes, fields};
-use fractum_math::Vec3;
 
 use crate::ledger::EnergyKind;
 use crate::scene::Scene;
@@ -111,15 +110,15 @@ fn look_at_bonds(scene: &mut Scene) {
     if scene.bonded.bodies.is_empty() || has_noticed(scene, Notice::Strain) {
         return;
     }
-    let (position, reference) = (&scene.bonded.particles.position, &scene.bonded.reference);
+    let (particles, reference) = (&scene.bonded.particles, &scene.bonded.reference);
     let mut found = None;
     for body in &scene.bonded.bodies {
         let pairs = body.bonds.pairs().iter().enumerate().filter(|(bond, _)| body.is_joined(*bond));
         let (mut joined, mut beyond, mut most) = (0usize, 0usize, (0.0, 0u32));
-        for (_, &[i, j]) in pairs {
-            let length = |at: &[Vec3]| (at[j as usize] - at[i as usize]).norm();
-            let before = length(reference);
-            let strain = ((length(position) - before) / before).abs();
+        for (bond, &[i, _]) in pairs {
+            let [from, to] = body.bonds.ends(bond, reference);
+            let before = (to - from).norm();
+            let strain = ((body.bonds.gap(bond, particles).norm() - before) / before).abs();
             joined += 1;
             beyond += usize::from(strain > STRAINED);
             if strain > most.0 {

@@ -66,9 +66,9 @@ impl Probe for RegionStress {
             if !bonds.is_live(bond) {
                 return 0.0;
             }
-            let [i, j] = bonds.pairs()[bond].map(|i| i as usize);
-            let virial = stress::virial(all.position[j] - all.position[i], -bonds.forces_of(bond, all).force);
-            let middle = (bonded.reference()[i] + bonded.reference()[j]) * 0.5;
+            let virial = stress::virial(bonds.gap(bond, all), -bonds.forces_of(bond, all).force);
+            let [from, to] = bonds.ends(bond, bonded.reference());
+            let middle = (from + to) * 0.5;
             ends * normal.at(&middle).dot(&(virial * along.at(&middle)))
         };
         self.bonds.iter().map(of).sum::<f64>() / self.volume

@@ -31,6 +31,9 @@ pub(crate) struct CalibrateArguments {
     /// Criterion whose strength is found.
     #[arg(long, value_enum, default_value = "principal", requires = "strength")]
     criterion: CriterionArgument,
+    /// Take the stress of particles at walls there, as materials.NAME.fracture.at_walls does; not with single beams.
+    #[arg(long, requires = "strength")]
+    at_walls: bool,
     /// Coordination of the bonds; chosen to suit Poisson's ratio if not given.
     #[arg(long)]
     coordination: Option<f64>,
@@ -102,6 +105,10 @@ pub(crate) fn run(arguments: &CalibrateArguments) -> Result<ExitCode, Failure> {
     };
     let strength = arguments.strength.as_deref().map(pressure).transpose()?;
     request.tensile_strength = strength.map(|strength| (strength, criterion));
+    if arguments.at_walls && criterion == StrengthCriterion::Beam {
+        return Err(Failure::input("--at-walls has no effect on single beams; choose another --criterion"));
+    }
+    request.at_walls = arguments.at_walls;
     request.coordination = arguments.coordination;
     request.convention = arguments.convention;
     request.particles = arguments.particles;
@@ -241,6 +248,9 @@ fn material(c: &Calibration, density: Option<f64>) -> String {
             "[materials.calibrated.fracture] # for the load peak in tension\ncriterion = \"{what}\"\ncriterion_strength = \"{:e} Pa\"\n",
             strength.peak
         );
+        if c.request.at_walls {
+            text += "at_walls = true\n";
+        }
     }
     text
 }

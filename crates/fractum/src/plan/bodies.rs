@@ -176,15 +176,15 @@ impl Plan {
             0.0 => String::new(),
             by => format!("; stiffer by {by} for each of their particles at a wall"),
         };
-        self.add(
-            "",
-            format!(
-                "{} bonds, coordination {:.2} off the walls, {:.2} of all (asked: {}){stiffer}",
-                report.bonds, report.coordination_interior, report.coordination_all, report.convention
-            ),
-        );
-        let sets: Vec<String> = report.walls.iter().map(|(wall, n)| format!("{}.{wall} {n}", report.name)).collect();
-        let sets = format!("sets of particles: {} {}, {}", report.name, report.particles, sets.join(", "));
+        let coordination = if report.walls.is_empty() {
+            format!("coordination {:.2}, without walls", report.coordination_all)
+        } else {
+            let (inside, all) = (report.coordination_interior, report.coordination_all);
+            format!("coordination {inside:.2} off the walls, {all:.2} of all (asked: {}){stiffer}", report.convention)
+        };
+        self.add("", format!("{} bonds, {coordination}", report.bonds));
+        let sets = report.walls.iter().map(|(wall, n)| format!(", {}.{wall} {n}", report.name)).collect::<String>();
+        let sets = format!("sets of particles: {} {}{sets}", report.name, report.particles);
         let (beams, beams_from) = match &report.joints {
             Joints::Beams(beams, from) => (beams, *from),
             Joints::Interfaces(interfaces) => {
