@@ -497,3 +497,24 @@ reaction = { group = "x+", along = "x" }
         assert!((most - 1.0).abs() < 0.01, "{motion}: {most}");
     }
 }
+
+/// A crack through one or two elements has no energy of its own.
+#[test]
+fn a_body_of_one_element_across_that_may_crack_is_told() {
+    let sheet = BAR.replace("strength_factor = \"if(abs(x - 20 cm) < 3 cm, 0.5, 1.0)\"", "thickness = \"10 mm\"");
+    let sheet = sheet.replace("fix = \"xyz\"", "fix = \"xy\"");
+    for (across, told) in [(1, true), (4, false)] {
+        let cells = [10 * across, across];
+        let mesh = structured_rectangle(cells, [0.4, 0.04], None);
+        let place = Workplace::with_mesh(&sheet, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+        let ended = place.fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert_eq!(ended.stdout.contains("may cost twice its fracture energy"), told, "{across}: {}", ended.stdout);
+        let phase = sheet.replace(
+            "fracture_energy = \"100 J/m^2\"",
+            "fracture_energy = \"100 J/m^2\"\nregularisation = \"phase-field\"",
+        );
+        let place = Workplace::with_mesh(&phase, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+        assert!(!place.fractum(&["check", "case.toml"]).stdout.contains("may cost twice"));
+    }
+}

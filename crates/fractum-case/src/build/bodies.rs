@@ -21,6 +21,8 @@ use crate::{Diagnostic, Place};
 
 /// Excess of the loads of cracks by the size of elements that is told.
 const LARGE_EXCESS: f64 = 0.05;
+/// Size of elements over the smallest extent of a body above which a crack through it is a matter of one or two elements.
+const WIDE: f64 = 0.5;
 
 /// A solid body of the case with its elements in the mesh.
 pub(super) struct Part<'a> {
@@ -372,7 +374,8 @@ pub(super) fn length_warnings(case: &Case, solid: &Solid, parts: &[Part], bounda
     warnings
 }
 
-/// Warns where elements are so large beside the process zone, or beside the body, that cracks run late from its notches.
+/// Warns where elements are so large beside the process zone, or beside the body, that cracks run late from its notches, or so large beside the
+/// body that a crack through it has no energy of its own.
 ///
 /// - `size`: of the elements where cracks are expected [m]; `longest`: what else is to be told of them
 fn excess_warning(
@@ -387,6 +390,17 @@ fn excess_warning(
     let extent = body.smallest_extent(notches.nodes);
     let whole = crack_scale(zone, extent);
     let [excess, most] = EXCESS_OF_PEAK.map(|factor| factor * size / whole);
+    let is_local = body.damage.as_ref().is_some_and(|zone| zone.regularisation.is_none());
+    if is_local && size > WIDE * extent {
+        let [size, extent] = [size, extent].map(|length| quantity(length, "m"));
+        let found = format!(
+            ": elements of {size} where cracks are expected, in a body whose smallest extent is {extent}: a crack through so few of them may cost twice \
+             its fracture energy, or three quarters of it"
+        );
+        return Some(
+            Diagnostic::warning(Code::CoarseMesh, &part.place, found).remedy("take four elements across it at least"),
+        );
+    }
     if excess < LARGE_EXCESS || !(notches.has(body) || case.interfaces.iter().any(|own| !own.law.is_bonded())) {
         return None;
     }
