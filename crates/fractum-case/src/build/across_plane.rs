@@ -1,5 +1,7 @@
 //! 2D solids lie in the xy-plane and have no stiffness across it: what would push them along z, or pass them by in front, is refused.
 
+use std::ops::RangeFrom;
+
 use fractum_fem::ElementKind;
 use fractum_output::number::quantity;
 
@@ -9,6 +11,8 @@ use crate::Place;
 use crate::model::{Body, BodyKind, LoadKind, Motion, RigidBody, RigidShape};
 
 const Z: usize = 2;
+/// Components yz and zx of an in-situ stress.
+const SHEARS: RangeFrom<usize> = 4..;
 /// Component of a unit vector, or distance over a size, that counts as none.
 const NEARLY: f64 = 1e-6;
 
@@ -20,6 +24,14 @@ pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
     let plane = node.map_or(0.0, |node| mesh.nodes[node as usize].z);
     for place in along_z(context) {
         context.error(&place, ": 2D solids lie in the xy-plane and cannot move along z", "a component along x or y");
+    }
+    let shear = context.case.in_situ.iter().flat_map(|in_situ| in_situ.stress[SHEARS].iter().flatten());
+    for field in shear.filter(|field| field.value.constant_value() != Some(0.0)) {
+        context.error(
+            &field.place,
+            ": 2D solids bear no shear across their plane",
+            "a stress in the plane, or a case in space",
+        );
     }
     for part in parts.iter().filter(|part| part.shape == ElementKind::T3) {
         if part.body.initial_velocity[Z].as_ref().is_some_and(|field| field.value.constant_value() != Some(0.0)) {

@@ -1,5 +1,6 @@
 //! Doubts about the stress of the solids before the run: its sign, and components that were forgotten.
 
+use fractum_fem::Plane;
 use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::number::quantity;
@@ -14,6 +15,8 @@ use crate::model::{Case, InSitu, SolverKind};
 const TENSION: f64 = 0.01;
 /// Largest stress below which a rock mass bears nothing [Pa]: a centimetre of it.
 const FAINT: f64 = 250.0;
+/// Share of the largest component by which that across a plane may differ from what follows from the others.
+const FOLLOWS: f64 = 0.01;
 /// Share of the area of the far field along an axis above which its stress should be given.
 const FACING: f64 = 0.1;
 
@@ -24,7 +27,7 @@ pub(super) fn doubts_of_in_situ(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec
         return Vec::new();
     };
     let pulls = pulling(stress, mesh, bodies);
-    let pulls = pulls.into_iter().chain(faint(stress, mesh, bodies));
+    let pulls = pulls.into_iter().chain(faint(stress, mesh, bodies)).chain(across(case, stress, mesh, bodies));
     pulls.chain(forgotten(case, stress, mesh, bodies)).collect()
 }
 
@@ -71,6 +74,22 @@ fn faint(stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     let found = format!(".stress is {} at most", quantity(largest, "Pa"));
     let note = Diagnostic::warning(Code::UnitOfLoad, &stress.place, found).expected(format!("{FAINT} Pa at least"));
     Some(note.remedy("did you mean MPa? A number without a unit is in Pa"))
+}
+
+/// A stress across the plane of 2D solids that is not the one that these have.
+fn across(case: &Case, stress: &InSitu, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
+    let field = stress.stress[2].as_ref().filter(|_| bodies.iter().all(|body| body.plane))?;
+    let differs = |body: &Own| {
+        let plane_stress = body.solid.plane.as_ref().is_some_and(|plane| plane.value == Plane::Stress);
+        let follows = if plane_stress { 0.0 } else { case.materials[body.solid.material].poisson_ratio };
+        body.nodes.iter().any(|&node| {
+            let given = stress.at(mesh.nodes[node as usize]).to_matrix();
+            (given[(2, 2)] - follows * (given[(0, 0)] + given[(1, 1)])).abs() > FOLLOWS * given.amax()
+        })
+    };
+    let found = ": across the plane of 2D solids stress follows from the others: nu (xx + yy), none in plane stress";
+    let note = Diagnostic::warning(Code::NoEffect, &field.place, found);
+    bodies.iter().any(differs).then(|| note.remedy("leave it out, or take a case in space"))
 }
 
 /// A normal stress that is not given, along which facets of the far field look: nothing presses there.
