@@ -235,6 +235,11 @@ impl Interfaces {
         self.faces.is_empty()
     }
 
+    /// Whether some were never joined: they bear pressure and friction alone.
+    pub(crate) fn rub(&self) -> bool {
+        self.kinds.iter().any(|kind| !kind.law.is_bonded())
+    }
+
     /// Pairs of different bodies that they join.
     pub fn joined_bodies(&self) -> Vec<[u32; 2]> {
         let bodies = self.faces.iter().map(|face| face.elements.map(|(body, _)| body));

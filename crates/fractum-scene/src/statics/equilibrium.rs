@@ -112,7 +112,12 @@ pub(super) fn accept_equilibrium(
 
 /// The error of a step without equilibrium.
 pub(super) fn no_equilibrium(scene: &Scene) -> StepError {
-    StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time }
+    let softer = if scene.interfaces().rub() {
+        "interfaces that were never joined may slide by turns where they are very stiff: give them a normal_stiffness of a tenth of that in the plan or less; or "
+    } else {
+        ""
+    };
+    StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer }
 }
 
 /// Fails where anchors alone hold what is loaded.
