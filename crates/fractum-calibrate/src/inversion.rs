@@ -58,13 +58,14 @@ pub fn invert(
                 poisson += found[axis].1 / axes.len() as f64;
             }
             solves += 3;
-        }
-        for &axis in axes.iter().filter(|_| sample.packing.domain.period().is_none()) {
-            let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
-            warm[axis] = Some(rest);
-            young.push(tension.young_modulus);
-            poisson += tension.poisson_ratio / axes.len() as f64;
-            solves += 1;
+        } else {
+            for &axis in axes {
+                let (tension, rest) = lab::tension(sample, axis, warm[axis].as_ref(), tolerance)?;
+                warm[axis] = Some(rest);
+                young.push(tension.young_modulus);
+                poisson += tension.poisson_ratio / axes.len() as f64;
+                solves += 1;
+            }
         }
         let mean = young.iter().sum::<f64>() / axes.len() as f64;
         let (low, high) = young.iter().fold((f64::INFINITY, 0.0f64), |(l, h), &y| (l.min(y), h.max(y)));

@@ -50,8 +50,7 @@ impl Measure for Moment {
         let Axis { point, direction } = self.about;
         if let (Some(particles), Some(group)) = (scene.names.particles(&self.on), &self.on.group) {
             let places = scene.bonded.supports().places(&particles);
-            let turns = |&particle: &u32| scene.bonded.particles.held[particle as usize] >> 3 == 0;
-            let still: Vec<u32> = particles.iter().copied().filter(|particle| !turns(particle)).collect();
+            let still = scene.bonded.still(&particles);
             if !particles.is_empty() && places.is_empty() && still.is_empty() {
                 let found = format!("= \"{}\": nothing holds it", group.value);
                 scene.names.error(&group.place, found, "a set that a support prescribes");

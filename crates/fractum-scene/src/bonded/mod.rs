@@ -132,6 +132,8 @@ pub struct Bonded {
     pub(crate) reference: Vec<Vec3>,
     pub(crate) bodies: Vec<BondedBody>,
     pub(crate) supports: Supports,
+    /// Particles that supports keep from turning, ascending, with the axes (bits) about which they do.
+    pub(crate) still: Vec<(u32, u8)>,
     pub(crate) loads: Loads,
     /// Rigid grains of particles.
     pub(crate) clumps: Clumps,
@@ -246,7 +248,19 @@ impl Bonded {
             self.particles.held[i] |= axes << 3;
             (0..3).filter(|axis| axes >> axis & 1 == 1).for_each(|axis| self.particles.spin[i][axis] = 0.0);
         }
+        self.still = turning.to_vec();
+        self.still.sort_unstable();
+        self.still.dedup_by(|next, own| {
+            let same = next.0 == own.0;
+            own.1 |= if same { next.1 } else { 0 };
+            same
+        });
         Ok(())
+    }
+
+    /// Those of some particles, ascending, that supports keep from turning, with the axes (bits) about which they do.
+    pub fn still(&self, particles: &[u32]) -> Vec<(u32, u8)> {
+        self.still.iter().copied().filter(|(particle, _)| particles.binary_search(particle).is_ok()).collect()
     }
 
     /// Whether all supports and loads grow in proportion to time until `end` [s], but for loads that hold from the start.

@@ -44,9 +44,8 @@ macro_rules! points {
                 &self.particles.velocity[point]
             }
 
-            fn moment_of_support(&self, point: usize) -> Vec3 {
-                let (held, moment) = (self.particles.held[point] >> 3, &self.particles.moment[point]);
-                Vec3::from_fn(|axis, _| if held >> axis & 1 == 1 { -moment[axis] } else { 0.0 })
+            fn moment(&self, point: usize) -> Vec3 {
+                self.particles.moment[point]
             }
         }
     };

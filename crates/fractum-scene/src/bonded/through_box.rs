@@ -60,22 +60,26 @@ pub(super) fn whole_pieces(bonded: &Bonded) -> Option<Particles> {
     let bonds: Vec<([u32; 2], Image)> = bonded.bodies.iter().flat_map(of_body).collect();
     let within = bonds.iter().filter(|(_, image)| *image == [0; 3]).map(|(pair, _)| *pair);
     let part = connected(bonded.particles.len(), within);
+    // Parts on both sides of a bond through a side, and the image of the second one.
+    let mut beside: Vec<Vec<(usize, Image)>> = vec![Vec::new(); part.len()];
+    for (pair, image) in bonds.iter().filter(|(_, image)| *image != [0; 3]) {
+        let [first, second] = pair.map(|i| part[i as usize] as usize);
+        beside[first].push((second, *image));
+        beside[second].push((first, image.map(|edges| -edges)));
+    }
     let mut image_of: Vec<Option<Image>> = vec![None; part.len()];
     for start in 0..part.len() {
         if part[start] as usize != start || image_of[start].is_some() {
             continue;
         }
         image_of[start] = Some([0; 3]);
-        let mut grows = true;
-        while grows {
-            grows = false;
-            for (pair, image) in &bonds {
-                let [first, second] = pair.map(|i| part[i as usize] as usize);
-                for (from, to, sign) in [(first, second, 1), (second, first, -1)] {
-                    if let (Some(known), None) = (image_of[from], image_of[to]) {
-                        image_of[to] = Some(std::array::from_fn(|k| known[k] + sign * image[k]));
-                        grows = true;
-                    }
+        let mut next = vec![(start, [0; 3])];
+        while let Some((from, known)) = next.pop() {
+            for &(to, image) in &beside[from] {
+                if image_of[to].is_none() {
+                    let there: Image = std::array::from_fn(|k| known[k] + image[k]);
+                    image_of[to] = Some(there);
+                    next.push((to, there));
                 }
             }
         }

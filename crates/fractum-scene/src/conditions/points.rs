@@ -28,8 +28,8 @@ pub(crate) trait Points {
     /// Velocity at the half step [m/s].
     fn velocity(&self, point: usize) -> &Vec3;
 
-    /// Moment of the support that keeps a point from turning [N m]; points of solids do not turn.
-    fn moment_of_support(&self, _point: usize) -> Vec3 {
+    /// Moment that would turn a point did nothing hold it [N m]; points of solids do not turn.
+    fn moment(&self, _point: usize) -> Vec3 {
         Vec3::zeros()
     }
 

@@ -22,8 +22,8 @@ pub enum PointProbe {
     Moment {
         /// Prescribed degrees of freedom; see [`Supports::places`].
         places: Vec<(u32, u32, u32)>,
-        /// Particles that supports keep from turning.
-        still: Vec<u32>,
+        /// Particles that supports keep from turning, and the axes (bits) about which they do; see [`Bonded::still`](crate::Bonded::still).
+        still: Vec<(u32, u8)>,
         /// The axis.
         about: Axis,
     },
@@ -58,7 +58,7 @@ impl PointProbe {
         match self {
             PointProbe::Reaction { places, .. } => supports.points_at(places).collect(),
             PointProbe::Moment { places, still, .. } => {
-                let mut points: Vec<u32> = supports.points_at(places).chain(still.iter().copied()).collect();
+                let mut points: Vec<u32> = supports.points_at(places).chain(still.iter().map(|own| own.0)).collect();
                 points.sort_unstable();
                 points.dedup();
                 points
@@ -85,8 +85,12 @@ impl PointProbe {
             }
             PointProbe::Moment { places, still, about } => {
                 let lever = |point| population.reference(point) - about.point;
-                let turning =
-                    still.iter().map(|&point| population.moment_of_support(point as usize).dot(&about.direction));
+                let turning = still.iter().map(|&(point, axes)| {
+                    let moment = population.moment(point as usize);
+                    let along =
+                        |axis: usize| if axes >> axis & 1 == 1 { moment[axis] * about.direction[axis] } else { 0.0 };
+                    -(along(0) + along(1) + along(2))
+                });
                 supports.reaction_by(places, |point| about.direction.cross(&lever(point))) + turning.sum::<f64>()
             }
             PointProbe::Displacement { points, along } => component(

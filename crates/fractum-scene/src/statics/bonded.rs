@@ -199,18 +199,17 @@ impl BondedStatics {
         scene.clock.dt_after = 0.0;
         scene.clock.time = time;
         scene.clock.step += 1;
-        let Bonded { particles, reference, bodies, supports, energy, .. } = &mut scene.bonded;
+        let Bonded { particles, reference, bodies, supports, still, energy, .. } = &mut scene.bonded;
         for (i, u) in self.run.displacements().iter().enumerate() {
             let (shift, turn) = (Vec3::new(u[0], u[1], u[2]), Vec3::new(u[3], u[4], u[5]));
             particles.position[i] = reference[i] + shift;
             particles.orientation[i] = rotation_by(turn);
         }
         supports.set_reactions(|particle, axis| self.run.reaction(particle)[axis]);
-        for (i, held) in particles.held.iter().enumerate().filter(|(_, held)| *held >> 3 != 0) {
+        for &(i, _) in &*still {
             // As in motion: what would turn the particle did nothing hold it.
-            let support = self.run.reaction(i as u32);
-            particles.moment[i] =
-                Vec3::from_fn(|axis, _| if held >> (axis + 3) & 1 == 1 { -support[axis + 3] } else { 0.0 });
+            let [.., x, y, z] = self.run.reaction(i);
+            particles.moment[i as usize] = -Vec3::new(x, y, z);
         }
         let body = &mut bodies[0];
         note_closest(body, &self.run, reference, time);
