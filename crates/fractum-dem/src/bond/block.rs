@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fractum_kernels::bond::{BondEnergy, BondLanes, BondLaw, ForceLanes};
 use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot};
-use fractum_math::{Rotation, Vec3, widest};
+use fractum_math::{Rotation, Vec3, prefetch, widest};
 
 use super::images::BlockThroughBox;
 use super::loads::{LoadLanes, load_sizes};
@@ -15,6 +15,9 @@ pub(super) const NOTHING: u8 = 0;
 pub(super) const VIRIALS: u8 = 1;
 pub(super) const BOUNDS: u8 = 2;
 pub(super) const LOADS: u8 = 3;
+
+/// Groups of bonds that are on their way into the cache while one is computed.
+const AHEAD: usize = 4;
 
 /// Bonds of a block of particles, each with its first particle in it.
 #[derive(Clone, Debug)]
@@ -182,7 +185,9 @@ impl<L: BondLaw> Block<L> {
             virial_bounds.fill([0.0; 2]);
         }
         through.iter_mut().for_each(|through| through.clear());
-        for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
+        for index in 0..groups.len() {
+            prefetch(groups, index + AHEAD);
+            let (group, memory) = (&mut groups[index], &mut memory[index]);
             let mut bonds = group.lanes(position, orientation);
             if let Some(through) = &through {
                 to_images(&through.offsets[index], &mut bonds);
@@ -247,7 +252,9 @@ impl<L: BondLaw> Block<L> {
         sums.fill([0.0; 6]);
         shares.clear();
         shares.resize(sums.len(), [0.0; 6]);
-        for (index, (group, memory)) in groups.iter_mut().zip(memory).enumerate() {
+        for index in 0..groups.len() {
+            prefetch(groups, index + AHEAD);
+            let (group, memory) = (&mut groups[index], &mut memory[index]);
             let bonds = group.lanes(position, orientation);
             let mean = group.mean_strains(field);
             let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
@@ -277,6 +284,7 @@ impl<L: BondLaw> Block<L> {
     ) -> BondEnergy {
         let mut sums = [Lanes::<WIDTH>::splat(0.0); 3];
         for (index, (group, memory)) in self.groups.iter().zip(&self.memory).enumerate() {
+            prefetch(&self.groups, index + AHEAD);
             let mut bonds = group.lanes(position, orientation);
             if let Some(through) = &self.through {
                 to_images(&through.offsets[index], &mut bonds);

@@ -71,6 +71,12 @@ fn relative<const W: usize>((w1, u1): Turn<W>, (w2, u2): Turn<W>) -> Turn<W> {
     (w1 * w2 + dot(u1, u2), sub(sub(scale(u2, w1), scale(u1, w2)), cross(u1, u2)))
 }
 
+/// t × (n × m): the moment on an end with tangent t. No closure, which might be compiled apart, for any processor.
+#[inline(always)]
+fn end_moment<const W: usize>(n: Vector<W>, m: Vector<W>, t: Vector<W>) -> Vector<W> {
+    sub(scale(n, dot(t, m)), scale(m, dot(t, n)))
+}
+
 /// A cohesive beam, whose forces are the derivative of its energy
 ///
 /// U = ½ (E S/l₀)(l − l₀)² + (2 E I/l₀)(θ₁² + θ₁·θ₂ + θ₂²) + ½ (G I₀/l₀) τ²
@@ -129,8 +135,7 @@ impl BondLaw for BeamSection {
         let h = scale(sub(h, scale(n, dot(h, n))), over);
         let rest = inverse.recip();
         let force = sub(scale(n, -(axial * (l - rest))), h);
-        let end = |m: Vector<W>, t: Vector<W>| sub(scale(n, dot(t, m)), scale(m, dot(t, n)));
-        ForceLanes { force, moment: [add(end(m1, t1), torque), sub(end(m2, t2), torque)] }
+        ForceLanes { force, moment: [add(end_moment(n, m1, t1), torque), sub(end_moment(n, m2, t2), torque)] }
     }
 
     #[inline(always)]
