@@ -137,3 +137,11 @@ fn forces_and_criterion(bencher: divan::Bencher, side: usize) {
         fracture.break_overloaded(&mut bonds, &particles, Occasion::default())
     });
 }
+
+/// Energies that the ledger asks for.
+#[divan::bench(args = [22, 47], sample_count = 20)]
+fn energies(bencher: divan::Bencher, side: usize) {
+    if let Some((bonds, particles, _)) = watched(side) {
+        bencher.counter(divan::counter::ItemsCount::new(bonds.len())).bench_local(|| bonds.energy(&particles));
+    }
+}

@@ -19,6 +19,9 @@ pub(super) const LOADS: u8 = 3;
 /// Groups of bonds that are on their way into the cache while one is computed.
 const AHEAD: usize = 4;
 
+/// Groups of bonds whose energies are kept before they are summed.
+const TOGETHER: usize = 16;
+
 /// Bonds of a block of particles, each with its first particle in it.
 #[derive(Clone, Debug)]
 pub(super) struct Block<L: BondLaw> {
@@ -188,10 +191,8 @@ impl<L: BondLaw> Block<L> {
         for index in 0..groups.len() {
             prefetch(groups, index + AHEAD);
             let (group, memory) = (&mut groups[index], &mut memory[index]);
-            let mut bonds = group.lanes(position, orientation);
-            if let Some(through) = &through {
-                to_images(&through.offsets[index], &mut bonds);
-            }
+            let images = through.as_ref().map(|through| &through.offsets[index]);
+            let bonds = group.lanes(position, orientation, images);
             let before = L::separated(&group.recent);
             let found = law.forces(&bonds, &group.own, &mut group.recent, memory);
             let fresh = L::separated(&group.recent) & !before;
@@ -255,7 +256,7 @@ impl<L: BondLaw> Block<L> {
         for index in 0..groups.len() {
             prefetch(groups, index + AHEAD);
             let (group, memory) = (&mut groups[index], &mut memory[index]);
-            let bonds = group.lanes(position, orientation);
+            let bonds = group.lanes(position, orientation, None);
             let mean = group.mean_strains(field);
             let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
             if found.failing != 0 {
@@ -275,7 +276,7 @@ impl<L: BondLaw> Block<L> {
 
 impl<L: BondLaw> Block<L> {
     #[inline(always)]
-    fn sum_energies(
+    fn sum_energies<const DEVIATING: bool>(
         &self,
         position: &[Vec3],
         orientation: &[Rotation],
@@ -283,22 +284,33 @@ impl<L: BondLaw> Block<L> {
         field: Option<&MeanStrain>,
     ) -> BondEnergy {
         let mut sums = [Lanes::<WIDTH>::splat(0.0); 3];
-        for (index, (group, memory)) in self.groups.iter().zip(&self.memory).enumerate() {
-            prefetch(&self.groups, index + AHEAD);
-            let mut bonds = group.lanes(position, orientation);
-            if let Some(through) = &self.through {
-                to_images(&through.offsets[index], &mut bonds);
-            }
-            let energies = match field {
-                None => law.energies(&bonds, &group.own, &group.recent, memory),
-                Some(field) => {
-                    law.deviating_energies(&bonds, group.mean_strains(field), &group.own, &group.recent, memory)
+        for begin in (0..self.groups.len()).step_by(TOGETHER) {
+            // Sums that stay in registers would be taken one by one.
+            let mut kept = [[[0.0; WIDTH]; 3]; TOGETHER];
+            let groups = self.groups[begin..].iter().zip(&self.memory[begin..]).zip(&mut kept);
+            for (index, ((group, memory), kept)) in groups.enumerate() {
+                let index = begin + index;
+                prefetch(&self.groups, index + AHEAD);
+                let images = self.through.as_ref().map(|through| &through.offsets[index]);
+                let bonds = group.lanes(position, orientation, images);
+                let energies = match field {
+                    Some(field) if DEVIATING => {
+                        law.deviating_energies(&bonds, group.mean_strains(field), &group.own, &group.recent, memory)
+                    }
+                    _ => law.energies(&bonds, &group.own, &group.recent, memory),
+                };
+                *kept = [energies.tension.0, energies.bending.0, energies.torsion.0];
+                for part in kept {
+                    for k in 0..WIDTH {
+                        // What is broken may have any energy.
+                        part[k] = if bonds.live.0[k] != 0.0 { part[k] } else { 0.0 };
+                    }
                 }
-            };
-            let parts = [energies.tension, energies.bending, energies.torsion];
-            for (sum, part) in sums.iter_mut().zip(parts) {
-                // What is broken may have any energy.
-                *sum = *sum + Lanes::of(|k| if bonds.live.0[k] != 0.0 { part.0[k] } else { 0.0 });
+            }
+            for parts in &kept {
+                for (sum, part) in sums.iter_mut().zip(parts) {
+                    *sum = *sum + Lanes(*part);
+                }
             }
         }
         let [tension, bending, torsion] = sums.map(|sum| sum.0.iter().sum());
@@ -308,13 +320,13 @@ impl<L: BondLaw> Block<L> {
 
 widest! {
     /// Energy that the live bonds of a block would give back.
-    pub(super) fn sum_energies<L: BondLaw>(
+    pub(super) fn sum_energies<L: BondLaw, const DEVIATING: bool>(
         block: &Block<L>,
         position: &[Vec3],
         orientation: &[Rotation],
         law: &L,
         field: Option<&MeanStrain>,
-    ) -> BondEnergy = Block::<L>::sum_energies;
+    ) -> BondEnergy = Block::<L>::sum_energies::<DEVIATING>;
 }
 
 impl<L: BondLaw> Group<L> {
@@ -332,8 +344,15 @@ impl<L: BondLaw> Group<L> {
     }
 
     /// The bonds at the present positions and orientations.
+    ///
+    /// - `images`: from the second particles to the images that the bonds join, in a box that repeats [m]
     #[inline(always)]
-    fn lanes(&self, position: &[Vec3], orientation: &[Rotation]) -> BondLanes<WIDTH> {
+    fn lanes(
+        &self,
+        position: &[Vec3],
+        orientation: &[Rotation],
+        images: Option<&[[f64; WIDTH]; 3]>,
+    ) -> BondLanes<WIDTH> {
         let (mut gap, mut turns) = ([[0.0; WIDTH]; 3], [[[0.0; WIDTH]; 4]; 2]);
         for k in 0..WIDTH {
             let (i, j) = (self.first[k] as usize, self.second[k] as usize);
@@ -347,6 +366,13 @@ impl<L: BondLaw> Group<L> {
                 turns[1][a][k] = qj[a];
             }
         }
+        if let Some(images) = images {
+            for a in 0..3 {
+                for k in 0..WIDTH {
+                    gap[a][k] += images[a][k];
+                }
+            }
+        }
         // nalgebra stores a quaternion as i, j, k, w.
         let turn = |t: [[f64; WIDTH]; 4]| (Lanes(t[3]), [Lanes(t[0]), Lanes(t[1]), Lanes(t[2])]);
         BondLanes {
@@ -356,14 +382,6 @@ impl<L: BondLaw> Group<L> {
             inverse: Lanes(self.inverse),
             live: Lanes(self.live),
         }
-    }
-}
-
-/// Takes the second particles of bonds to the images that these join.
-#[inline(always)]
-fn to_images(offsets: &[[f64; WIDTH]; 3], bonds: &mut BondLanes<WIDTH>) {
-    for (gap, offset) in bonds.gap.iter_mut().zip(offsets) {
-        *gap = *gap + Lanes(*offset);
     }
 }
 

@@ -403,8 +403,9 @@ impl<L: BondLaw> BondNetwork<L> {
     pub fn energy(&self, particles: &Particles) -> BondEnergy {
         let Particles { position, orientation, .. } = particles;
         let of = |block: &Block<L>| {
+            let sum = if self.mean.is_some() { sum_energies::<L, true> } else { sum_energies::<L, false> };
             let BondEnergy { tension, bending, torsion } =
-                sum_energies(block, position, orientation, &self.law, self.mean.as_ref());
+                sum(block, position, orientation, &self.law, self.mean.as_ref());
             [tension, bending, torsion]
         };
         let parts = self.of_all_blocks(&of).into_iter();
