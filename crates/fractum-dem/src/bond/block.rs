@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use fractum_kernels::bond::{BondEnergy, BondLanes, BondLaw, ForceLanes};
-use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot};
+use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot, side_by_side};
 use fractum_math::{Rotation, Vec3, prefetch, widest};
 
 use super::images::BlockThroughBox;
@@ -18,9 +18,6 @@ pub(super) const LOADS: u8 = 3;
 
 /// Groups of bonds that are on their way into the cache while one is computed.
 const AHEAD: usize = 4;
-
-/// Groups of bonds whose energies are kept before they are summed.
-const TOGETHER: usize = 16;
 
 /// Bonds of a block of particles, each with its first particle in it.
 #[derive(Clone, Debug)]
@@ -195,6 +192,7 @@ impl<L: BondLaw> Block<L> {
             let bonds = group.lanes(position, orientation, images);
             let before = L::separated(&group.recent);
             let found = law.forces(&bonds, &group.own, &mut group.recent, memory);
+            side_by_side(&found);
             let fresh = L::separated(&group.recent) & !before;
             if fresh != 0 {
                 let lanes = (0..WIDTH).filter(|lane| fresh >> lane & 1 == 1);
@@ -259,6 +257,7 @@ impl<L: BondLaw> Block<L> {
             let bonds = group.lanes(position, orientation, None);
             let mean = group.mean_strains(field);
             let found = law.deviating_forces(&bonds, mean, &group.own, &mut group.recent, memory);
+            side_by_side(&found.forces);
             if found.failing != 0 {
                 let lanes = (0..WIDTH).filter(|lane| found.failing >> lane & 1 == 1);
                 failing.extend(lanes.map(|lane| *first_bond + (index * WIDTH + lane) as u32));
@@ -284,33 +283,21 @@ impl<L: BondLaw> Block<L> {
         field: Option<&MeanStrain>,
     ) -> BondEnergy {
         let mut sums = [Lanes::<WIDTH>::splat(0.0); 3];
-        for begin in (0..self.groups.len()).step_by(TOGETHER) {
-            // Sums that stay in registers would be taken one by one.
-            let mut kept = [[[0.0; WIDTH]; 3]; TOGETHER];
-            let groups = self.groups[begin..].iter().zip(&self.memory[begin..]).zip(&mut kept);
-            for (index, ((group, memory), kept)) in groups.enumerate() {
-                let index = begin + index;
-                prefetch(&self.groups, index + AHEAD);
-                let images = self.through.as_ref().map(|through| &through.offsets[index]);
-                let bonds = group.lanes(position, orientation, images);
-                let energies = match field {
-                    Some(field) if DEVIATING => {
-                        law.deviating_energies(&bonds, group.mean_strains(field), &group.own, &group.recent, memory)
-                    }
-                    _ => law.energies(&bonds, &group.own, &group.recent, memory),
-                };
-                *kept = [energies.tension.0, energies.bending.0, energies.torsion.0];
-                for part in kept {
-                    for k in 0..WIDTH {
-                        // What is broken may have any energy.
-                        part[k] = if bonds.live.0[k] != 0.0 { part[k] } else { 0.0 };
-                    }
+        for (index, (group, memory)) in self.groups.iter().zip(&self.memory).enumerate() {
+            prefetch(&self.groups, index + AHEAD);
+            let images = self.through.as_ref().map(|through| &through.offsets[index]);
+            let bonds = group.lanes(position, orientation, images);
+            let energies = match field {
+                Some(field) if DEVIATING => {
+                    law.deviating_energies(&bonds, group.mean_strains(field), &group.own, &group.recent, memory)
                 }
-            }
-            for parts in &kept {
-                for (sum, part) in sums.iter_mut().zip(parts) {
-                    *sum = *sum + Lanes(*part);
-                }
+                _ => law.energies(&bonds, &group.own, &group.recent, memory),
+            };
+            let parts = [energies.tension, energies.bending, energies.torsion];
+            side_by_side(&parts);
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                // What is broken may have any energy.
+                *sum = *sum + Lanes::of(|k| if bonds.live.0[k] != 0.0 { part.0[k] } else { 0.0 });
             }
         }
         let [tension, bending, torsion] = sums.map(|sum| sum.0.iter().sum());

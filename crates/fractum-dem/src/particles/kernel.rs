@@ -1,6 +1,6 @@
 //! The motion of a block of particles, four side by side.
 
-use fractum_kernels::lanes::{Lanes, Vector, add, cross, dot, scale, sub};
+use fractum_kernels::lanes::{Lanes, Vector, add, cross, dot, scale, side_by_side, sub};
 use fractum_math::elementary::{cos, sin};
 use fractum_math::{HalfSteps, Rotation, Vec3, widest};
 
@@ -137,6 +137,7 @@ fn advance_four(
         let taken_after = Lanes::splat(0.5 * dt_after) * (dot(resist, after.0) + dot(brake, after.1));
         let moving = kinetic_before(mass, velocity, force, dt_before);
         let turning = kinetic_before(inertia, spin, moment, dt_before);
+        side_by_side(&[taken, taken_after, moving, turning]);
         for k in 0..W {
             work.before.damping -= taken.0[k];
             work.after.damping -= taken_after.0[k];
@@ -148,15 +149,18 @@ fn advance_four(
     if !is_plain {
         let moving = kinetic_after(mass, velocity, force, dt_after);
         let turning = kinetic_after(inertia, spin, moment, dt_after);
+        side_by_side(&[moving, turning]);
         for k in 0..W {
             work.after.kinetic += moving.0[k];
             work.after.kinetic += turning.0[k];
         }
     }
     let dt = Lanes::splat(dt_after);
+    let places = add(vectors(position), scale(velocity, dt));
+    side_by_side(&[velocity, spin, places]);
     store(velocity, velocities);
     store(spin, spins);
-    store(add(vectors(position), scale(velocity, dt)), position);
+    store(places, position);
     turn(orientation, scale(spin, dt));
 }
 
@@ -198,6 +202,7 @@ fn turn(orientation: &mut [Rotation; W], theta: Vector<W>) {
     // cos(θ/2) and sin(θ/2)/θ; the series are exact to round-off below 0.2 rad.
     let h = Lanes::splat(0.25) * square;
     let (mut c, mut s) = (series(h, [2.0, 12.0, 30.0, 56.0]), Lanes::splat(0.5) * series(h, [6.0, 20.0, 42.0, 72.0]));
+    side_by_side(&[square, c, s]);
     for k in 0..W {
         if square.0[k] >= 0.04 {
             let angle = square.0[k].sqrt();
@@ -218,6 +223,7 @@ fn turn(orientation: &mut [Rotation; W], theta: Vector<W>) {
     // One Newton step of 1/√: round-off only drifts by parts in 1e16.
     let keep = Lanes::splat(1.5) - Lanes::splat(0.5) * (scalar * scalar + dot(vector, vector));
     let (vector, scalar) = (scale(vector, keep), scalar * keep);
+    side_by_side(&(vector, scalar));
     for (k, orientation) in orientation.iter_mut().enumerate() {
         let turned = nalgebra::Quaternion::new(scalar.0[k], vector[0].0[k], vector[1].0[k], vector[2].0[k]);
         *orientation = Rotation::new_unchecked(turned);
