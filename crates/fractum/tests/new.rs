@@ -43,7 +43,7 @@ fn every_template_is_listed_and_passes_check_without_a_doubt() {
     let again = place.fractum(&["new", "plate"]);
     assert_eq!(again.code, Some(1));
     assert!(again.stderr.contains("exists already; name another folder"), "{}", again.stderr);
-    assert!(place.fractum(&["new", "plat"]).stderr.contains("templates: plate, bracket"));
+    assert!(place.fractum(&["new", "plat"]).stderr.contains("did you mean plate? templates: plate, bracket"));
 }
 
 /// A template that was run.
