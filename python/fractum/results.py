@@ -18,6 +18,10 @@ from . import tables
 from .vtk import Frame
 
 
+#: Pictures of the last instant, those that say most first.
+_PICTURES = ("damage", "cracks", "broken_bonds", "temperature", "stress", "particles")
+
+
 class Parts(dict[str, Frame]):
     """The parts of a scene at one time, by name: `"solid"`, `"discrete elements"`, `"bonded particles"`, `"loose particles"`,
     `"rigid bodies"`, `"bonds"`, `"cracks"`, `"gas"`, `"interfaces"`, `"contacts"`. `time` [s]."""
@@ -207,6 +211,25 @@ class Results:
             near = ", ".join(f"{self.times[i]:.6g}" for i in sorted(np.argsort(away)[:2]))
             raise ValueError(f"no frame at {time:.6g} s; the nearest are at {near}: ask for one, or take it with nearest=True")
         return self.frames[index]
+
+    def show(self, name: str | None = None, ax: Any = None) -> Any:
+        """Draws a picture of the last instant with matplotlib, as the report has it; its axes.
+
+        - `name`: `"damage"`, `"cracks"`, `"broken_bonds"`, `"temperature"`, `"stress"` or `"particles"`; by default the first of these that there is
+        - `ax`: axes to draw into
+
+        `KeyError` names the nearest picture where there is none of a name.
+        """
+        import matplotlib.pyplot as plt
+
+        known = {path.stem: path for path in (self.folder / "pictures").glob("*.png") if not path.stem.startswith("strip-")}
+        name = name or next((usual for usual in _PICTURES if usual in known), "damage")
+        if name not in known:
+            raise KeyError(f"no picture {name!r}; {tables.nearest(name, known)}")
+        ax = ax or plt.subplots(figsize=(8, 7))[1]
+        ax.imshow(plt.imread(known[name]))
+        ax.set_axis_off()
+        return ax
 
     def plot(self, *names: str, x: str = "time", ax: Any = None) -> Any:
         """Plots columns of the history over another one with matplotlib; its axes.

@@ -125,11 +125,12 @@ def explain(key: str | None = None) -> Any:
     return Key(found[0].path, found[0].meaning, found[0].type, found[0].default, tuple(found[1:]))
 
 
-def new(template: str | None = None, folder: Place | None = None) -> Any:
+def new(template: str | None = None, folder: Place | None = None, overwrite: bool = False) -> Any:
     """Writes a case that runs as it stands, with its mesh, as `fractum new` does; the path of its case.
 
     - `template`: its name; without one a table of all comes back, and nothing is written
     - `folder`: where to; a folder of that name by default
+    - `overwrite`: replace a case that the folder has
 
     The template `study` has a `study.toml` beside its case, for `fractum.study`. Raises `CaseError` with the nearest name where there is
     no such template, and for a folder that has a case.
@@ -137,7 +138,7 @@ def new(template: str | None = None, folder: Place | None = None) -> Any:
     if template is None:
         names, whats = zip(*_core.templates())
         return tables.table({"name": list(names), "what": list(whats)})
-    return Path(_core.new(template, folder))
+    return Path(_core.new(template, folder, overwrite))
 
 
 def study(

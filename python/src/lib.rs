@@ -69,8 +69,8 @@ fn check(py: Python<'_>, case: PathBuf, set: Vec<(String, String)>) -> PyResult<
 
 /// Writes a template, as `fractum new` does; the path of its case.
 #[pyfunction]
-fn new(py: Python<'_>, name: &str, folder: Option<PathBuf>) -> PyResult<PathBuf> {
-    fractum::template::write(name, folder).map(|written| written.case).map_err(|failure| raise(py, &failure))
+fn new(py: Python<'_>, name: &str, folder: Option<PathBuf>, overwrite: bool) -> PyResult<PathBuf> {
+    fractum::template::write(name, folder, overwrite).map(|written| written.case).map_err(|failure| raise(py, &failure))
 }
 
 /// Names of the templates, each with what it is.

@@ -98,10 +98,11 @@ pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
 /// Writes a template into a folder.
 ///
 /// - `folder`: that of its name, if absent
+/// - `overwrite`: whether files of its names that are there are replaced
 ///
 /// # Errors
-/// [`Failure::Input`] for an unknown name and a folder that has one of the files; [`Failure::Write`].
-pub fn write(name: &str, folder: Option<PathBuf>) -> Result<Written, Failure> {
+/// [`Failure::Input`] for an unknown name, and for a folder that has one of the files; [`Failure::Write`].
+pub fn write(name: &str, folder: Option<PathBuf>, overwrite: bool) -> Result<Written, Failure> {
     let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
         let names = || all().map(|(name, _)| name);
         let hint = nearest(name, names()).map_or(";".to_owned(), |near| format!("; did you mean {near}?"));
@@ -118,7 +119,7 @@ pub fn write(name: &str, folder: Option<PathBuf>) -> Result<Written, Failure> {
     if !template.study.is_empty() {
         files.push(("study.toml", template.study.into()));
     }
-    if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
+    if let Some((file, _)) = files.iter().find(|(file, _)| !overwrite && folder.join(file).exists()) {
         let path = folder.join(file);
         return Err(Failure::input(format!("{}: exists already; name another folder", path.display())));
     }

@@ -18,7 +18,7 @@ pub(crate) fn new(name: Option<&str>, folder: Option<PathBuf>) -> Result<ExitCod
         );
         return Ok(ExitCode::Done);
     };
-    let written = template::write(name, folder)?;
+    let written = template::write(name, folder, false)?;
     let folder = written.case.parent().unwrap_or(&written.case);
     say!("{}: {}", folder.display(), written.what);
     let (command, file) = written.study.map_or(("run", written.case.clone()), |study| ("study", study));
