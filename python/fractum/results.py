@@ -116,8 +116,10 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """`summary.json` as a dictionary: status, probes, energies, counts, expectations, hashes."""
-        with open(self.folder / "summary.json", encoding="utf-8") as file:
-            return json.load(file)
+        path = self.folder / "summary.json"
+        if not path.exists():
+            raise FileNotFoundError(f"{self.folder}: no summary.json: a run has not ended here; name its results folder")
+        return json.loads(path.read_text(encoding="utf-8"))
 
     @property
     def warnings(self) -> list[dict[str, str]]:
@@ -127,7 +129,7 @@ class Results:
     @property
     def probes(self) -> dict[str, float]:
         """Last values of the probes by name."""
-        return {name: probe["final"] for name, probe in self.summary["probes"].items()}
+        return tables.Named("probe", {name: probe["final"] for name, probe in self.summary["probes"].items()})
 
     def probe(self, name: str) -> Probe:
         """A probe with its values over the run and their largest, least and last.
@@ -144,9 +146,11 @@ class Results:
 
     @cached_property
     def _history(self) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-        path = self.folder / "history.csv"
-        # A run under way, or one that was killed.
-        return tables.read(path if path.exists() else path.with_suffix(".csv.part"))
+        # A run under way, or one that was killed, has an unfinished one.
+        for name in ("history.csv", "history.csv.part"):
+            if (self.folder / name).exists():
+                return tables.read(self.folder / name)
+        raise FileNotFoundError(f"{self.folder}: no history.csv; name the results folder of a run")
 
     @property
     def history(self) -> Any:
@@ -156,7 +160,7 @@ class Results:
     @property
     def units(self) -> dict[str, str]:
         """Units of the columns of the history; `-` and `1` are pure numbers."""
-        return self._history[1]
+        return tables.Named("column", self._history[1])
 
     @property
     def cracks(self) -> Any:
@@ -204,6 +208,8 @@ class Results:
             raise FileNotFoundError(f"{self.folder}: no frames; output.fields of the case says when they are written")
         if time is None:
             return self.frames[-1]
+        if not isinstance(time, (int, float, np.number)):
+            raise TypeError(f"time is {time!r}; expected a number, in s")
         away = np.abs(self.times - time)
         index = int(np.argmin(away))
         others = np.abs(np.delete(self.times, index) - self.times[index])
