@@ -59,7 +59,7 @@ impl Simulation {
         let mut files = Group::default();
         let skin = self.skin();
         let pictures = skin.map_or(Ok(Vec::new()), |skin| self.draw(&pieces, skin, &mut files))?;
-        let movie = self.film(&mut files)?;
+        let movie = film(&mut self, &mut files)?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -168,25 +168,6 @@ impl Simulation {
         })
     }
 
-    /// The movie, where the case asks for one and it can be made; whether it is among the files.
-    fn film(&mut self, files: &mut Group) -> Result<bool, Failure> {
-        if !self.case.output.movie || !self.ranks.leads() {
-            return Ok(false);
-        }
-        let mode = self.solver.shows_modes().then_some(1);
-        let Simulation { scene, folder, phases, .. } = self;
-        let made = if neighbours::is_divided(&scene.solid) {
-            Err("no process has the whole mesh".to_owned())
-        } else {
-            phases.timed(Part::Output, || report::add_movie(folder, mode, files)).map_err(|error| error.to_string())
-        };
-        let Err(why) = made else { return Ok(true) };
-        let found = Warning::new(Code::NoEffect, "output.movie", format!("no movie was made: {why}"));
-        let remedy = format!("fractum movie {} makes one of the frames, where they fit into memory", folder.display());
-        self.messages.warn(found.remedy(remedy))?;
-        Ok(false)
-    }
-
     /// The frame of the last instant, and its row.
     fn record_last(&mut self, end: &End) -> Result<(), Failure> {
         let Simulation { solver, scene, recorder, phases, .. } = self;
@@ -204,6 +185,25 @@ impl Simulation {
         // The pictures show all of them.
         self.finish_pieces()
     }
+}
+
+/// The movie, where the case asks for one and it can be made; whether it is among the files.
+fn film(simulation: &mut Simulation, files: &mut Group) -> Result<bool, Failure> {
+    if !simulation.case.output.movie || !simulation.ranks.leads() {
+        return Ok(false);
+    }
+    let mode = simulation.solver.shows_modes().then_some(1);
+    let Simulation { scene, folder, phases, messages, .. } = simulation;
+    let made = if neighbours::is_divided(&scene.solid) {
+        Err("no process has the whole mesh".to_owned())
+    } else {
+        phases.timed(Part::Output, || report::add_movie(folder, mode, files)).map_err(|error| error.to_string())
+    };
+    let Err(why) = made else { return Ok(true) };
+    let found = Warning::new(Code::NoEffect, "output.movie", format!("no movie was made: {why}"));
+    let remedy = format!("fractum movie {} makes one of the frames, where they fit into memory", folder.display());
+    messages.warn(found.remedy(remedy))?;
+    Ok(false)
 }
 
 /// Characters in a line of the plan in the report.
