@@ -53,11 +53,16 @@ macro_rules! template {
     };
 }
 
-const TEMPLATES: [Template; 15] = [
+const TEMPLATES: [Template; 16] = [
     template!("plate", "plate with two holes pulled apart at rest; triangles", meshes::plate),
     template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra", meshes::bracket),
     template!("brazilian", "disc of rock split between platens at rest; triangles", meshes::brazilian),
     template!("beam", "notched beam in three-point bending at rest; triangles", meshes::beam),
+    template!(
+        "aggregate",
+        "notched beam of mortar with stiffer grains, bent at rest; triangles, an interface",
+        meshes::aggregate
+    ),
     template!("bonded-ucs", "cylinder of bonded particles crushed at rest; no mesh", case alone),
     template!("triaxial", "cylinder of bonded particles crushed under confinement in motion; no mesh", case alone),
     template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments", meshes::impact),
