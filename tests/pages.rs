@@ -356,6 +356,6 @@ mod tests {
                 rest = after;
             }
         }
-        assert_eq!(count, 2);
+        assert!(count > 7, "{count} notebooks");
     }
 }

@@ -10,7 +10,7 @@ Everything is in SI units. `docs/python.md` of the repository has a recipe for e
 from ._core import __version__
 from .errors import CaseError, FractumError, MachineError, StoppedError
 from .results import Frame, Frames, Parts, Probe, Results
-from .runs import Check, Key, check, explain, run, study, sweep
+from .runs import Check, Key, check, explain, new, run, study, sweep
 from .simulation import Simulation
 from .tables import with_units
 
@@ -30,6 +30,7 @@ __all__ = [
     "__version__",
     "check",
     "explain",
+    "new",
     "run",
     "study",
     "sweep",

@@ -18,6 +18,10 @@ from . import tables
 from .vtk import Frame
 
 
+#: Pictures of the last instant, those that say most first.
+_PICTURES = ("damage", "cracks", "broken_bonds", "temperature", "stress", "particles")
+
+
 class Parts(dict[str, Frame]):
     """The parts of a scene at one time, by name: `"solid"`, `"discrete elements"`, `"bonded particles"`, `"loose particles"`,
     `"rigid bodies"`, `"bonds"`, `"cracks"`, `"gas"`, `"interfaces"`, `"contacts"`. `time` [s]."""
@@ -112,8 +116,10 @@ class Results:
     @cached_property
     def summary(self) -> dict[str, Any]:
         """`summary.json` as a dictionary: status, probes, energies, counts, expectations, hashes."""
-        with open(self.folder / "summary.json", encoding="utf-8") as file:
-            return json.load(file)
+        path = self.folder / "summary.json"
+        if not path.exists():
+            raise FileNotFoundError(f"{self.folder}: no summary.json: a run has not ended here; name its results folder")
+        return json.loads(path.read_text(encoding="utf-8"))
 
     @property
     def warnings(self) -> list[dict[str, str]]:
@@ -123,7 +129,7 @@ class Results:
     @property
     def probes(self) -> dict[str, float]:
         """Last values of the probes by name."""
-        return {name: probe["final"] for name, probe in self.summary["probes"].items()}
+        return tables.Named("probe", {name: probe["final"] for name, probe in self.summary["probes"].items()})
 
     def probe(self, name: str) -> Probe:
         """A probe with its values over the run and their largest, least and last.
@@ -140,9 +146,11 @@ class Results:
 
     @cached_property
     def _history(self) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-        path = self.folder / "history.csv"
-        # A run under way, or one that was killed.
-        return tables.read(path if path.exists() else path.with_suffix(".csv.part"))
+        # A run under way, or one that was killed, has an unfinished one.
+        for name in ("history.csv", "history.csv.part"):
+            if (self.folder / name).exists():
+                return tables.read(self.folder / name)
+        raise FileNotFoundError(f"{self.folder}: no history.csv; name the results folder of a run")
 
     @property
     def history(self) -> Any:
@@ -152,7 +160,7 @@ class Results:
     @property
     def units(self) -> dict[str, str]:
         """Units of the columns of the history; `-` and `1` are pure numbers."""
-        return self._history[1]
+        return tables.Named("column", self._history[1])
 
     @property
     def cracks(self) -> Any:
@@ -200,6 +208,8 @@ class Results:
             raise FileNotFoundError(f"{self.folder}: no frames; output.fields of the case says when they are written")
         if time is None:
             return self.frames[-1]
+        if not isinstance(time, (int, float, np.number)):
+            raise TypeError(f"time is {time!r}; expected a number, in s")
         away = np.abs(self.times - time)
         index = int(np.argmin(away))
         others = np.abs(np.delete(self.times, index) - self.times[index])
@@ -207,6 +217,25 @@ class Results:
             near = ", ".join(f"{self.times[i]:.6g}" for i in sorted(np.argsort(away)[:2]))
             raise ValueError(f"no frame at {time:.6g} s; the nearest are at {near}: ask for one, or take it with nearest=True")
         return self.frames[index]
+
+    def show(self, name: str | None = None, ax: Any = None) -> Any:
+        """Draws a picture of the last instant with matplotlib, as the report has it; its axes.
+
+        - `name`: `"damage"`, `"cracks"`, `"broken_bonds"`, `"temperature"`, `"stress"` or `"particles"`; by default the first of these that there is
+        - `ax`: axes to draw into
+
+        `KeyError` names the nearest picture where there is none of a name.
+        """
+        import matplotlib.pyplot as plt
+
+        known = {path.stem: path for path in (self.folder / "pictures").glob("*.png") if not path.stem.startswith("strip-")}
+        name = name or next((usual for usual in _PICTURES if usual in known), "damage")
+        if name not in known:
+            raise KeyError(f"no picture {name!r}; {tables.nearest(name, known)}")
+        ax = ax or plt.subplots(figsize=(8, 7))[1]
+        ax.imshow(plt.imread(known[name]))
+        ax.set_axis_off()
+        return ax
 
     def plot(self, *names: str, x: str = "time", ax: Any = None) -> Any:
         """Plots columns of the history over another one with matplotlib; its axes.

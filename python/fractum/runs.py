@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 import json
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -125,6 +125,22 @@ def explain(key: str | None = None) -> Any:
     return Key(found[0].path, found[0].meaning, found[0].type, found[0].default, tuple(found[1:]))
 
 
+def new(template: str | None = None, folder: Place | None = None, overwrite: bool = False) -> Any:
+    """Writes a case that runs as it stands, with its mesh, as `fractum new` does; the path of its case.
+
+    - `template`: its name; without one a table of all comes back, and nothing is written
+    - `folder`: where to; a folder of that name by default
+    - `overwrite`: replace a case that the folder has
+
+    The template `study` has a `study.toml` beside its case, for `fractum.study`. Raises `CaseError` with the nearest name where there is
+    no such template, and for a folder that has a case.
+    """
+    if template is None:
+        names, whats = zip(*_core.templates())
+        return tables.table({"name": list(names), "what": list(whats)})
+    return Path(_core.new(template, folder, overwrite))
+
+
 def study(
     case: Place,
     vary: Mapping[str, Sequence[Any]] | None = None,
@@ -133,7 +149,7 @@ def study(
     output: Place | None = None,
     threads: int | None = 1,
     overwrite: bool = False,
-    compare: Iterable[str] = (),
+    compare: Iterable[str] | Mapping[str, str | Callable[[Results], float]] = (),
 ) -> Any:
     """Runs a case with every combination of values, as `fractum study` does; a table with a row for each run.
 
@@ -142,7 +158,8 @@ def study(
     - `workers`: runs at the same time, each with `threads` threads
     - `output`: folder of the study; `results/sweep/<case>` by default
     - `overwrite`: run again what has finished there before
-    - `compare`: what else is compared: `["max(load)", "strength = max(load) / (10 mm * 1 m)"]`
+    - `compare`: what else is compared: `["max(load)", "strength = max(load) / (10 mm * 1 m)"]`; or by names of columns, also with functions of
+      the `Results` of a run: `{"strength": "max(load) / (10 mm * 1 m)", "mean": lambda results: results.history["load"].mean()}`
 
     Columns: what differs from run to run, `status` (`completed`, `stopped`, `failed`), `folder`, `error`, the last value of
     each probe, and what is compared. A run that fails is a row with the reason; the others go on. Ctrl-C ends all runs,
@@ -150,21 +167,26 @@ def study(
     """
     output = Path(output) if output is not None else Path("results/sweep") / Path(case).stem
     vary = {str(key): {_written(value): value for value in values} for key, values in (vary or {}).items()}
+    if not isinstance(compare, Mapping):
+        compare = dict.fromkeys([compare] if isinstance(compare, str) else compare, "")
+    texts = [f"{name} = {of}" if of else name for name, of in compare.items() if isinstance(of, str)]
+    functions = {name: of for name, of in compare.items() if not isinstance(of, str)}
     given = overrides(set), [(key, list(values)) for key, values in vary.items()]
-    runs = _core.study(case, given, list(compare), output, (max(1, workers), threads, overwrite))
+    runs = _core.study(case, given, texts, output, (max(1, workers), threads, overwrite))
     places = [dict(coordinates) for _, _, _, coordinates, _ in runs]
-    texts = {key: {text.strip('"'): value for text, value in values.items()} for key, values in vary.items()}
+    written = {key: {text.strip('"'): value for text, value in values.items()} for key, values in vary.items()}
     columns = {}
     for axis in dict.fromkeys(axis for place in places for axis in place):
         values = [place.get(axis, "") for place in places]
         if axis in vary or any(value != values[0] for value in values):
-            columns[axis] = [texts.get(axis, {}).get(value, value) for value in values]
+            columns[axis] = [written.get(axis, {}).get(value, value) for value in values]
     columns["status"] = [status for _, status, _, _, _ in runs]
     columns["folder"] = [str(folder) for folder, _, _, _, _ in runs]
     columns["error"] = [error for _, _, error, _, _ in runs]
     finished = [status in ("completed", "stopped") for status in columns["status"]]
-    probes = [Results(folder).probes if has else {} for folder, has in zip(columns["folder"], finished)]
-    found = [{**last, **dict(values)} for last, (_, _, _, _, values) in zip(probes, runs)]
+    results = [Results(folder) if has else None for folder, has in zip(columns["folder"], finished)]
+    own = [run.probes | {name: of(run) for name, of in functions.items()} if run else {} for run in results]
+    found = [{**last, **dict(values)} for last, (_, _, _, _, values) in zip(own, runs)]
     for name in sorted({name for values in found for name in values}):
         values = [values.get(name) for values in found]
         columns[name] = [float("nan") if value is None else value for value in values]

@@ -14,6 +14,34 @@ try:
 except ImportError:
     pandas = None
 
+if pandas is not None:
+
+    class _Frame(pandas.DataFrame):
+        """A data frame whose error of a wrong column says the nearest one; what is made of it is a plain one."""
+
+        def __getitem__(self, key: Any) -> Any:
+            try:
+                return super().__getitem__(key)
+            except KeyError:
+                if not isinstance(key, str):
+                    raise
+                raise KeyError(f"no column {key!r}; {nearest(key, self.columns)}") from None
+
+
+class Named(dict[str, Any]):
+    """Values by name, whose error of a wrong one says the nearest.
+
+    - `what`: what the names are, as `probe`
+    """
+
+    def __init__(self, what: str, values: Any = ()) -> None:
+        super().__init__(values)
+        self._what = what
+
+    def __missing__(self, name: str) -> Any:
+        raise KeyError(f"no {self._what} {name!r}; {nearest(name, self)}")
+
+
 _HEADER = re.compile(r"^(.*?) \[(.*)\]$")
 
 
@@ -23,7 +51,7 @@ def table(columns: dict[str, Any], units: dict[str, str] | None = None) -> Any:
     - `units`: unit of each column, kept in `attrs["units"]` of a data frame
     """
     if pandas is not None:
-        frame = pandas.DataFrame(columns)
+        frame = _Frame(columns)
         frame.attrs["units"] = dict(units or {})
         return frame
     arrays = {name: np.asarray(values) for name, values in columns.items()}
@@ -43,7 +71,7 @@ def with_units(table: Any) -> Any:
 def nearest(name: str, names: Iterable[str]) -> str:
     """What is said of a name that there is not: the nearest one, or all."""
     names = list(names)
-    near = difflib.get_close_matches(name, names, n=1)
+    near = difflib.get_close_matches(str(name), map(str, names), n=1)
     return f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(map(str, names)) or 'none'}"
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .tables import nearest
+from .tables import Named
 
 _KINDS = {
     "Float64": "f8",
@@ -41,9 +41,9 @@ class Frame:
     time: float | None
     points: np.ndarray
     cells: list[tuple[str, np.ndarray]]
-    point_data: Arrays
-    cell_data: Arrays
-    field_data: Arrays
+    point_data: dict[str, np.ndarray]
+    cell_data: dict[str, np.ndarray]
+    field_data: dict[str, np.ndarray]
     units: dict[str, str]
 
     def __init__(self, path: str | Path) -> None:
@@ -67,9 +67,9 @@ class Frame:
         self.time, self.field_data, self.units = pieces[0].time, pieces[0].field_data, pieces[0].units
         self.points = _put([piece.points for piece in pieces], numbers)
         names = pieces[0].point_data
-        self.point_data = Arrays({name: _put([piece.point_data[name] for piece in pieces], numbers) for name in names})
+        self.point_data = Named("array", {name: _put([piece.point_data[name] for piece in pieces], numbers) for name in names})
         names = pieces[0].cell_data
-        self.cell_data = Arrays({name: np.concatenate([piece.cell_data[name] for piece in pieces]) for name in names})
+        self.cell_data = Named("array", {name: np.concatenate([piece.cell_data[name] for piece in pieces]) for name in names})
         self.cells = []
         for piece, own in zip(pieces, numbers):
             for kind, nodes in piece.cells:
@@ -128,13 +128,6 @@ class Frame:
         return cloud
 
 
-class Arrays(dict[str, np.ndarray]):
-    """Arrays by name."""
-
-    def __missing__(self, name: str) -> np.ndarray:
-        raise KeyError(f"no array {name!r}; {nearest(name, self)}")
-
-
 def _put(parts: list[np.ndarray], numbers: list[np.ndarray]) -> np.ndarray:
     """Rows of pieces at their places in the whole."""
     count = max((int(own.max()) + 1 for own in numbers if len(own)), default=0)
@@ -148,14 +141,14 @@ class _Appended:
     """The arrays of a file, and the units that it names."""
 
     def __init__(self, root: ElementTree.Element, data: memoryview) -> None:
-        self.units: dict[str, str] = {}
+        self.units: dict[str, str] = Named("array with a unit")
         self.data = data
         self.order = "<" if root.get("byte_order") == "LittleEndian" else ">"
         self.compressed = root.get("compressor") is not None
 
-    def of(self, section: ElementTree.Element | None) -> Arrays:
+    def of(self, section: ElementTree.Element | None) -> dict[str, np.ndarray]:
         """The arrays of a section, by name."""
-        found = Arrays()
+        found = Named("array")
         for tag in () if section is None else section.iter("DataArray"):
             kind = np.dtype(self.order + _KINDS[tag.get("type")])
             values = np.frombuffer(self._bytes(int(tag.get("offset"))), dtype=kind)

@@ -67,6 +67,18 @@ fn check(py: Python<'_>, case: PathBuf, set: Vec<(String, String)>) -> PyResult<
     Ok((plan.to_string(), warnings.map(|warning| parts(&warning)).collect()))
 }
 
+/// Writes a template, as `fractum new` does; the path of its case.
+#[pyfunction]
+fn new(py: Python<'_>, name: &str, folder: Option<PathBuf>, overwrite: bool) -> PyResult<PathBuf> {
+    fractum::template::write(name, folder, overwrite).map(|written| written.case).map_err(|failure| raise(py, &failure))
+}
+
+/// Names of the templates, each with what it is.
+#[pyfunction]
+fn templates() -> Vec<(&'static str, &'static str)> {
+    fractum::template::all().collect()
+}
+
 /// Path, meaning, type and default of a key of the case file.
 type Key = (&'static str, &'static str, String, &'static str);
 
@@ -150,6 +162,8 @@ fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(study, module)?)?;
     module.add_function(wrap_pyfunction!(check, module)?)?;
     module.add_function(wrap_pyfunction!(explain, module)?)?;
+    module.add_function(wrap_pyfunction!(new, module)?)?;
+    module.add_function(wrap_pyfunction!(templates, module)?)?;
     module.add_function(wrap_pyfunction!(interrupt, module)?)?;
     module.add_function(wrap_pyfunction!(clear_interrupt, module)?)
 }

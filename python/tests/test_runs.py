@@ -53,6 +53,57 @@ def test_a_run_that_stops_itself_says_why(breaking, tmp_path):
     assert fractum.Results(tmp_path / "out").summary["status"] == "stopped"
 
 
+def test_a_template_is_a_case_that_can_be_checked(tmp_path, monkeypatch):
+    case = fractum.new("plate", tmp_path / "mine")
+    assert case == tmp_path / "mine" / "case.toml" and "load factor" in fractum.check(case).plan
+    with pytest.raises(fractum.CaseError, match="exists already"):
+        fractum.new("plate", tmp_path / "mine")
+    case.write_text("")
+    assert fractum.new("plate", tmp_path / "mine", overwrite=True).read_text()
+    with pytest.raises(fractum.CaseError, match="did you mean quench?"):
+        fractum.new("quenched")
+    monkeypatch.chdir(tmp_path)
+    assert fractum.new("study").with_name("study.toml").exists()
+    assert "tunnel" in list(fractum.new()["name"])
+
+
+def test_a_study_takes_any_statistic(breaking, tmp_path):
+    compare = {"peak": "max(load)", "mean": lambda results: results.history["load"].mean(), "load": lambda results: 7}
+    table = fractum.study(breaking, {"strength": ["2 MPa"]}, set=SHORT, output=tmp_path / "runs", compare=compare)
+    history = fractum.Results(table["folder"][0]).history["load"]
+    assert table["mean"][0] == pytest.approx(np.mean(history)) and table["load"][0] == 7
+    assert table["peak"][0] >= max(history)
+    with pytest.raises(fractum.CaseError, match="of a probe: max, min"):
+        fractum.study(breaking, {"strength": ["2 MPa"]}, set=SHORT, output=tmp_path / "runs", compare="mean(load)")
+
+
+def test_wrong_names_say_the_nearest_everywhere(breaking, tmp_path):
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    solid = results.fields()["solid"]
+    for of, name in [(results.probes, "lod"), (results.units, "lod"), (solid.cell_data, "damge"), (solid.units, "stres")]:
+        with pytest.raises(KeyError, match="did you mean"):
+            of[name]
+    if tables.pandas:
+        with pytest.raises(KeyError, match="no column 'lod'; did you mean 'load'?"):
+            results.history["lod"]
+        assert type(results.history[["time", "load"]]) is tables.pandas.DataFrame
+        assert fractum.with_units(results.history).columns[0] == "time [s]"
+    with pytest.raises(TypeError, match="expected a number, in s"):
+        results.fields("3 ms")
+    empty = fractum.Results(tmp_path)
+    for look in (lambda: empty.summary, lambda: empty.probes, lambda: empty.history):
+        with pytest.raises(FileNotFoundError, match="results folder"):
+            look()
+
+
+def test_pictures_are_shown_by_name(breaking, tmp_path):
+    pytest.importorskip("matplotlib").use("Agg")
+    results = fractum.run(breaking, set=SHORT, output=tmp_path / "out")
+    assert results.show().images and results.show("stress").images
+    with pytest.raises(KeyError, match="did you mean 'stress'?"):
+        results.show("stresses")
+
+
 def test_values_are_written_as_a_case_file_has_them():
     values = {"a": 0.5, "b": "2 mm/s", "c": ["1 mm", 2], "d": {"x": "1 m"}, "e": True, "f": np.float64(0.25)}
     written = dict(runs.overrides(values))

@@ -168,3 +168,33 @@ fn sets_that_multiply_are_refused() {
     let error = read_inp(text.as_bytes()).unwrap_err().to_string();
     assert!(error.contains("have more than 192 members in all"), "{error}");
 }
+
+#[test]
+fn a_file_that_is_cut_at_its_end_is_told() {
+    let whole = "*NODE\n1,0,0\n2,1,0\n3,0,1\n4,1,1\n*ELEMENT, TYPE=CPS3, ELSET=part\n1,1,2,3\n2,2,4,3\n";
+    let told = |text: &str| {
+        let notices = read_inp(text.as_bytes()).unwrap().notices;
+        notices.into_iter().find(|notice| notice.contains("may have been cut")).unwrap_or_default()
+    };
+    let with_step = format!("{whole}*STEP\n*STATIC\n*END STEP\n");
+    let in_part = format!(
+        "*PART, NAME=p\n{whole}*END PART\n*ASSEMBLY, NAME=a\n*INSTANCE, NAME=i, PART=p\n*END INSTANCE\n*END ASSEMBLY"
+    );
+    for complete in [whole, &with_step, &in_part] {
+        assert_eq!(told(complete), "", "{complete}");
+    }
+    // Within a line of an element whose last number is shorter than it was, between two elements, and within a step, a part and an assembly.
+    let cuts = [
+        (whole.trim_end().to_owned(), "ends with a line of *ELEMENT without a line break"),
+        (whole.replace("2,2,4,3\n", ""), "ends with elements, and 1 node(s) have none"),
+        (with_step.replace("*END STEP\n", ""), "*STEP has no *END STEP"),
+        (in_part.split("*END PART").next().unwrap().to_owned(), "*PART has no *END PART"),
+        (
+            in_part.split("*END INSTANCE").next().unwrap().to_owned(),
+            "*ASSEMBLY has no *END ASSEMBLY, *INSTANCE has no *END INSTANCE",
+        ),
+    ];
+    for (text, says) in cuts {
+        assert!(told(&text).ends_with(says), "{:?}: {text}", told(&text));
+    }
+}

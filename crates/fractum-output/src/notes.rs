@@ -24,6 +24,9 @@ pub const PARTICLES: &str = "particles.png";
 /// Bonds that particles have lost.
 pub const BROKEN_BONDS: &str = "broken_bonds.png";
 
+/// The animated picture of all frames, in the results folder.
+pub const MOVIE: &str = "movie.png";
+
 /// How the names of the pictures over time begin.
 pub const STRIP_FILE: &str = "strip-";
 
@@ -36,6 +39,9 @@ pub struct Notes {
     pub plan: String,
     /// Pictures in the folder `pictures`.
     pub pictures: Vec<PictureNote>,
+    /// Whether the run ended with a movie of its frames.
+    #[serde(default)]
+    pub movie: bool,
     /// Materials and settings: what and its value.
     #[serde(default)]
     pub inputs: Vec<(String, String)>,

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use fractum_output::atomic::Group;
 use fractum_output::columns::HistoryColumns;
 use fractum_output::history::{self, Column, Table};
-use fractum_output::notes::{NOTES, Notes, PictureNote, PlotNote};
+use fractum_output::notes::{MOVIE, NOTES, Notes, PictureNote, PlotNote};
 use fractum_output::number::quantity;
 use fractum_output::summary::Summary;
 use fractum_output::{ReadError, fragments};
@@ -58,6 +58,7 @@ fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Report
         Err(ReadError::Refused { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => Vec::new(),
         read => read.map_err(|e| missing("fragments.csv", &e))?,
     };
+    let movie = if notes.movie { fs::read(place(MOVIE)).ok() } else { None };
     let pictures = notes.pictures.iter().filter_map(|note| figure(&place, note)).collect();
     // Bonds are columns where there are some; what never changed, as the particles of a bonded body, says nothing.
     let grows = |name: &String| history.column(name).is_some_and(|(values, _)| values.iter().any(|n| *n != values[0]));
@@ -76,6 +77,7 @@ fn page(folder: &Path, place: impl Fn(&str) -> PathBuf) -> Result<String, Report
         cracks,
         fragments,
         pictures,
+        movie,
         inputs: notes.inputs,
         plan: notes.plan,
         case_file: notes.case_file,

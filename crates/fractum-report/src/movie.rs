@@ -295,6 +295,13 @@ pub struct MovieSettings {
     pub mode: Option<usize>,
 }
 
+impl Default for MovieSettings {
+    /// All frames, ten a second.
+    fn default() -> Self {
+        MovieSettings { width: 800, height: 680, rate: 10, mode: None }
+    }
+}
+
 /// Pictures of one swing of a natural vibration.
 const SWING: usize = 24;
 
@@ -316,15 +323,31 @@ pub struct Movie {
 /// # Errors
 /// [`ReportError::Input`] for a folder without frames or a size out of range; [`ReportError::Write`].
 pub fn movie(folder: &Path, output: &Path, settings: MovieSettings) -> Result<Movie, ReportError> {
-    let MovieSettings { width, height, rate, mode } = settings;
-    let index = FrameIndex::open(folder)?;
-    if mode.is_some_and(|mode| mode == 0 || mode > index.len()) || mode.is_some() && !folder.join("modes.csv").is_file()
-    {
+    let (mode, has_modes) = (settings.mode, folder.join("modes.csv").is_file());
+    if mode.is_some_and(|mode| !has_modes || mode == 0 || FrameIndex::open(folder).is_ok_and(|all| mode > all.len())) {
         let found = format!("{}: no mode {}", folder.display(), mode.unwrap_or(0));
         return Err(ReportError::Input(format!(
             "{found}; name a results folder of solver.kind = \"modes\", and one of its modes"
         )));
     }
+    let (movie, bytes) = film(folder, settings)?;
+    atomic::write(output, &bytes)?;
+    Ok(movie)
+}
+
+/// Pixels of the movie that a run with that many frames ends with.
+pub fn expected_pixels(frames: f64) -> f64 {
+    let MovieSettings { width, height, .. } = MovieSettings::default();
+    frames * (width * height) as f64
+}
+
+/// The frames of a results folder as an animated PNG: what it shows, and its bytes.
+///
+/// # Errors
+/// [`ReportError::Input`] for a folder without frames or a size out of range.
+pub fn film(folder: &Path, settings: MovieSettings) -> Result<(Movie, Vec<u8>), ReportError> {
+    let MovieSettings { width, height, rate, mode } = settings;
+    let index = FrameIndex::open(folder)?;
     let all: Vec<usize> = mode.map_or((0..index.len()).collect(), |mode| vec![mode - 1; SWING]);
     let frames = Frames::survey(index, &all[..if mode.is_some() { 1 } else { all.len() }])?;
     let draw = |picture: usize| {
@@ -332,7 +355,7 @@ pub fn movie(folder: &Path, output: &Path, settings: MovieSettings) -> Result<Mo
         let swing = if mode.is_some() { sin(phase) } else { 1.0 };
         frames.draw(all[picture], swing, width, height)
     };
-    atomic::write(output, &animation([width, height], all.len(), rate, draw)?)?;
+    let bytes = animation([width, height], all.len(), rate, draw)?;
     let (label, unit) = frames.label();
-    Ok(Movie { frames: all.len(), label, unit, range: frames.range })
+    Ok((Movie { frames: all.len(), label, unit, range: frames.range }, bytes))
 }

@@ -6,6 +6,7 @@
 //! - [`plan`]: what a run will do, before it does it
 //! - [`report`]: the page of a results folder
 //! - [`study`]: many runs of a list, done here or one by one, and what they came to side by side
+//! - [`template`]: cases to start from
 //! - [`terminal`]: lines on stdout and stderr
 //! - [`verify`]: the gallery against its references
 //!
@@ -60,6 +61,7 @@ mod run;
 mod simulation;
 mod solver;
 pub mod study;
+pub mod template;
 pub mod terminal;
 pub mod verify;
 

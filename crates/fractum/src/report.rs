@@ -9,11 +9,15 @@ mod none;
 #[cfg(feature = "report")]
 pub use drawn::write;
 #[cfg(feature = "report")]
-pub(crate) use drawn::{STUDY_FILES, Skin, add, draw, pixels_at_end, pixels_over_time, strip, write_study};
+pub(crate) use drawn::{
+    STUDY_FILES, Skin, add, add_movie, draw, pixels_at_end, pixels_of_movie, pixels_over_time, strip, write_study,
+};
 #[cfg(feature = "report")]
 pub use fractum_report::movie::{Movie, MovieSettings};
 #[cfg(not(feature = "report"))]
-pub(crate) use none::{STUDY_FILES, Skin, add, draw, pixels_at_end, pixels_over_time, strip, write_study};
+pub(crate) use none::{
+    STUDY_FILES, Skin, add, add_movie, draw, pixels_at_end, pixels_of_movie, pixels_over_time, strip, write_study,
+};
 #[cfg(not(feature = "report"))]
 pub use none::{no_report, write};
 

@@ -50,6 +50,25 @@ fn toughness_energy_and_lengths_become_each_other() {
 }
 
 #[test]
+fn names_that_are_nearly_right_lead_on() {
+    let place = Workplace::new("");
+    assert_eq!(place.fractum(&["material", "Soda lime_glass"]).code, Some(0));
+    for (name, says) in [
+        ("granit", "did you mean granite? known: concrete"),
+        ("Westerly granite", "did you mean granite or lac-du-bonnet?"),
+        ("glass", "did you mean soda-lime-glass or borosilicate-glass?"),
+        ("float-glass", "soda-lime-glass"),
+        ("SiC", "did you mean silicon-carbide?"),
+        ("Al2O3", "did you mean alumina?"),
+        ("C30/37", "did you mean concrete --compressive-strength \"30 MPa\"?"),
+        ("graphene", "no material \"graphene\"; known: concrete"),
+    ] {
+        let ended = place.fractum(&["material", name]);
+        assert!(ended.code == Some(1) && ended.stderr.contains(says), "{name}: {}", ended.stderr);
+    }
+}
+
+#[test]
 fn every_material_is_listed_and_runs_in_a_template() {
     let place = Workplace::new("");
     let list = place.fractum(&["material"]).stdout;

@@ -24,6 +24,11 @@ fn the_command_finds_the_vibrations_of_any_case_with_solids() {
     assert_eq!(frames, 4);
     let movie = place.fractum(&["movie", "out", "--mode", "2"]);
     assert_eq!(movie.code, Some(0), "{}", movie.stderr);
+    // With the run: one swing of the slowest.
+    let asked = ["modes", "case.toml", "--count", "1", "-o", "swing", "--quiet", "--set", "output.movie=true"];
+    assert_eq!(place.fractum(&asked).code, Some(0));
+    let swing = fs::read(place.path("swing/movie.png")).unwrap();
+    assert_eq!(swing.windows(4).filter(|bytes| bytes == b"fcTL").count(), 24);
     let none = place.fractum(&["movie", "out", "--mode", "5"]);
     assert_eq!(none.code, Some(1));
     assert!(none.stderr.contains("no mode 5"), "{}", none.stderr);

@@ -8,11 +8,12 @@ use serde_json::Value;
 
 use crate::common::{Workplace, summary};
 
-const NAMES: [&str; 15] = [
+const NAMES: [&str; 16] = [
     "plate",
     "bracket",
     "brazilian",
     "beam",
+    "aggregate",
     "bonded-ucs",
     "triaxial",
     "impact",
@@ -43,7 +44,7 @@ fn every_template_is_listed_and_passes_check_without_a_doubt() {
     let again = place.fractum(&["new", "plate"]);
     assert_eq!(again.code, Some(1));
     assert!(again.stderr.contains("exists already; name another folder"), "{}", again.stderr);
-    assert!(place.fractum(&["new", "plat"]).stderr.contains("templates: plate, bracket"));
+    assert!(place.fractum(&["new", "plat"]).stderr.contains("did you mean plate? templates: plate, bracket"));
 }
 
 /// A template that was run.
@@ -123,6 +124,16 @@ fn the_split_bar_has_the_waves_of_a_bar_and_the_strength_of_its_rock() {
     let strength = ran.probe("strength", "final");
     assert!((115e6..130e6).contains(&strength), "{strength} Pa");
     assert!(ran.probe("shortening", "max") > 0.01, "it is crushed");
+}
+
+#[test]
+fn cracks_of_the_beam_with_grains_take_more_than_its_bond_and_less_than_its_mortar() {
+    let ran = Ran::new("aggregate", &[]).silent();
+    let energy = |name: &str| ran.summary["energy"][name].as_f64().unwrap();
+    // Over the ligament of 35 x 50 mm, when 30 % of the peak is left.
+    let taken = (energy("damage") + energy("interface_fracture")) / (0.035 * 0.05);
+    assert!((20.0..40.0).contains(&taken), "{taken} J/m²");
+    assert!(ran.probe("load", "final") < 0.3 * ran.probe("load", "max"));
 }
 
 #[test]

@@ -38,6 +38,29 @@ fn a_report_has_a_strip_over_time_inputs_scales_and_titles_by_quantity() {
     assert!(ended.stdout.contains(&format!("{frames} frames, colours are damage from 0 to 1")), "{}", ended.stdout);
 }
 
+#[test]
+fn a_key_makes_the_movie_with_the_run_and_shows_it_in_the_report() {
+    let workplace = Workplace::new(&BREAKING_BAR.replace("[output]", "[output]\nmovie = true"));
+    let run = |more: &[&str]| {
+        let ended = workplace.fractum(&[&["run", "case.toml", "-o", "out", "--quiet"], more].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        fs::read_to_string(workplace.path("out/report.html")).unwrap()
+    };
+    let html = run(&[]);
+    let made = fs::read(workplace.path("out/movie.png")).unwrap();
+    let frames = fs::read_to_string(workplace.path("out/fields.pvd")).unwrap().matches("name=\"solid\"").count();
+    assert_eq!((count(&made, b"acTL"), count(&made, b"fcTL")), (1, frames));
+    assert!(html.contains("alt=\"movie of all frames\""));
+    // The same movie as that of the command, and the same page as that made later.
+    assert_eq!(workplace.fractum(&["movie", "out", "-o", "later.png"]).code, Some(0));
+    assert!(made == fs::read(workplace.path("later.png")).unwrap());
+    assert_eq!(workplace.fractum(&["report", "out"]).code, Some(0));
+    assert!(html == fs::read_to_string(workplace.path("out/report.html")).unwrap());
+    // A run anew without the key leaves none behind, and one that shows no movie of another state.
+    let without = run(&["--overwrite", "--set", "output.movie=false"]);
+    assert!(!without.contains("movie of all frames") && !workplace.path("out/movie.png").exists());
+}
+
 /// Plots over the probes of the breaking bar: of its own columns, with a level, and with points from a file.
 const PLOTS: &str = r#"
 [[plots]]

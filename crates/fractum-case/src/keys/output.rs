@@ -17,6 +17,7 @@ pub(super) static FIRST: &[KeyDoc] = &[
 #[rustfmt::skip]
 pub(super) static LAST: &[KeyDoc] = &[
     key("output.fields.pieces", K::Quantity(D::NONE), "1", "Files that solids and particles of a frame are cut into, 1 to 4096. Beyond 1 a .pvtu or .pvtp lists them, and several processes share the work of writing them"),
+    key("output.movie", K::Flag, "false", "Write an animated picture of all frames as the run ends, as `fractum movie` does: movie.png, which the report shows too"),
     key("output.history", K::Table, "", "Rows of history.csv"),
     key("output.history.every", K::Quantity(D::TIME), "1/1000 of the run", "Time between rows, > 0. With several stages the default is 1/1000 of those in motion; every state at rest is a row"),
     key("output.checkpoint", K::Table, "", "Checkpoints to resume from"),

@@ -17,6 +17,8 @@ pub struct Output {
     pub gives_fields: bool,
     /// Files that solids and particles of a frame are cut into, from 1.
     pub frame_pieces: usize,
+    /// Whether the run ends with a movie of its frames.
+    pub movie: bool,
     /// Time between rows of the history [s].
     pub history_every: f64,
     /// Whether the case gives that time.

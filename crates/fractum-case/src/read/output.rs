@@ -60,6 +60,7 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
         every.map(|every| every.value)
     };
     let fields = every("fields", end);
+    let movie = table.flag("movie").or(false);
     let history = every("history", end);
     let checkpoint = every("checkpoint", None);
     let fragments = table.table_or_empty("fragments");
@@ -75,6 +76,7 @@ pub(super) fn read(root: &Table<'_>, end: Option<f64>, plots: Option<Vec<Plot>>)
         fields_every_at_rest: fields.unwrap_or(end / FRAMES),
         gives_fields: fields.is_some(),
         frame_pieces: pieces as usize,
+        movie,
         history_every: history.unwrap_or(end / ROWS),
         gives_history: history.is_some(),
         checkpoint_every: checkpoint.unwrap_or(CHECKPOINT),

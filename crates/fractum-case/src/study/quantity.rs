@@ -66,7 +66,12 @@ impl Quantity {
             return line(if field == "time_of_max" { "s" } else { &probe.unit }, take(probe));
         }
         let compiled = compile(&self.text, &mut Probes(&summary.probes), false).map_err(|error| {
-            let remedy = if error.remedy.is_empty() { String::new() } else { format!("; {}", error.remedy) };
+            let mut remedy = if error.remedy.is_empty() { String::new() } else { format!("; {}", error.remedy) };
+            if error.message.starts_with("unknown function") {
+                let of_probes: Vec<&str> = REDUCTIONS.iter().map(|(name, _)| *name).collect();
+                remedy +=
+                    &format!("; of a probe: {}; a probe with `expression` has further ones", of_probes.join(", "));
+            }
             format!("\"{}\": {}{remedy}", self.text, error.message)
         })?;
         match compiled.kind {
@@ -161,6 +166,7 @@ mod tests {
         }
         let refused = |text: &str| Quantity::parse(text).unwrap().of(&summary()).unwrap_err();
         assert!(refused("max(laod)").contains("laod") && refused("load + width").contains("load + width"));
+        assert!(refused("mean(load)").contains("of a probe: max, min, absmax, final, time_of_max; a probe with"));
         assert!(refused("load > 3 N").contains("condition") && Quantity::parse("=1").is_err());
         let lines = of_probes(&summary());
         let names: Vec<&str> = lines.iter().map(|line| line.quantity.as_str()).collect();

@@ -19,6 +19,7 @@ pub(super) fn raw(mut deck: Deck, bytes: &[u8]) -> Result<Raw, Fault> {
     check_nodes(&deck)?;
     let mut builder = Builder::default();
     builder.raw.notices = notices(&deck);
+    builder.raw.notices.extend(cut(&deck, bytes));
     builder.raw.node_tags = std::mem::take(&mut deck.node_tags);
     builder.raw.nodes = std::mem::take(&mut deck.nodes);
     builder.raw.node_blocks = std::mem::take(&mut deck.node_blocks);
@@ -95,6 +96,30 @@ fn notices(deck: &Deck) -> Vec<String> {
         ));
     }
     notices
+}
+
+/// What to tell of a file that looks as if its end were missing: what it has not ended, elements that end before all nodes have some, or
+/// a last number that may be the beginning of one.
+fn cut(deck: &Deck, bytes: &[u8]) -> Option<String> {
+    let lacks = |name: &String| format!("*{name} has no *END {name}");
+    let why = match deck.ends_within {
+        _ if !deck.unended.is_empty() => list(&deck.unended.iter().map(lacks).collect::<Vec<_>>()),
+        Some("ELEMENT") if unused(deck) > 0 => format!("it ends with elements, and {} node(s) have none", unused(deck)),
+        Some(name) if bytes.last().is_some_and(|last| !b"\r\n".contains(last)) => {
+            format!("it ends with a line of *{name} without a line break")
+        }
+        _ => return None,
+    };
+    Some(format!("the file may have been cut at its end, so that elements are missing or wrong: {why}"))
+}
+
+/// Number of nodes that no element names; none where elements were left out, which may have named them.
+fn unused(deck: &Deck) -> usize {
+    if !deck.left_out.is_empty() {
+        return 0;
+    }
+    let used: BTreeSet<u64> = deck.corners.iter().chain(&deck.mid_nodes).copied().collect();
+    deck.node_tags.iter().filter(|tag| !used.contains(tag)).count()
 }
 
 impl Surface {

@@ -34,6 +34,10 @@ pub(super) struct Deck {
     pub(super) axisymmetric: BTreeSet<String>,
     /// Labels of nodes that elements of higher order have between their corners.
     pub(super) mid_nodes: Vec<u64>,
+    /// What the file has begun and not ended, such as `PART`.
+    pub(super) unended: Vec<String>,
+    /// Keyword whose data the file ends with, `NODE` or `ELEMENT`; none of others.
+    pub(super) ends_within: Option<&'static str>,
     /// Instances of parts.
     pub(super) instances: Instances,
     /// Where the lines of each part stand, by its name in capitals.
@@ -96,7 +100,11 @@ impl Deck {
         let mut cursor = Cursor::new(bytes);
         cursor.skip_byte_order_mark();
         let mut deck = Deck::default();
-        deck.lines(&mut cursor)?;
+        deck.ends_within = match deck.lines(&mut cursor)? {
+            Block::Nodes { .. } => Some("NODE"),
+            Block::Elements { .. } => Some("ELEMENT"),
+            _ => None,
+        };
         if deck.instances.list.is_empty() {
             // A file of parts alone.
             let parts = std::mem::take(&mut deck.parts);
@@ -124,7 +132,8 @@ impl Deck {
         Fault::unsupported(bytes.len(), message)
     }
 
-    fn lines(&mut self, cursor: &mut Cursor) -> Result<(), Fault> {
+    /// Reads lines up to the end of the cursor; the block in which they end.
+    fn lines(&mut self, cursor: &mut Cursor) -> Result<Block, Fault> {
         let mut block = Block::Other;
         while let Some(line) = deck::next(cursor)? {
             match line {
@@ -132,12 +141,13 @@ impl Deck {
                 Line::Data { at, fields } => self.data(cursor, &block, at, &fields)?,
             }
         }
-        Ok(())
+        Ok(block)
     }
 
     fn open(&mut self, cursor: &mut Cursor, keyword: &Keyword) -> Result<Block, Fault> {
         let internal = keyword.get("INTERNAL").is_some();
         let scope = self.scope;
+        self.note_ends(&keyword.name);
         Ok(match keyword.name.as_str() {
             "NODE" => {
                 if keyword.get("SYSTEM").is_some_and(|system| !system.eq_ignore_ascii_case("R")) {
@@ -174,6 +184,7 @@ impl Deck {
                 let (from, mut to) = (cursor.at, cursor.bytes.len());
                 while let Some((at, line)) = cursor.line() {
                     if deck::is_keyword(line, "ENDPART") {
+                        self.note_ends("ENDPART");
                         to = at;
                         break;
                     }
@@ -194,6 +205,15 @@ impl Deck {
             }
             _ => Block::Other,
         })
+    }
+
+    /// Keeps what a keyword begins and must end by another one.
+    fn note_ends(&mut self, name: &str) {
+        if ["PART", "INSTANCE", "ASSEMBLY", "STEP"].contains(&name) {
+            self.unended.push(name.to_owned());
+        } else if let Some(last) = name.strip_prefix("END").and_then(|of| self.unended.iter().rposition(|n| n == of)) {
+            self.unended.remove(last);
+        }
     }
 
     /// Reads the lines of a part as those of its instance, and leaves those that the instance has itself.

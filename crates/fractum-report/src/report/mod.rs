@@ -51,6 +51,8 @@ pub struct ReportData {
     pub fragments: Vec<Fragment>,
     /// Pictures of the body.
     pub pictures: Vec<Figure>,
+    /// The movie of all frames as an APNG file's bytes.
+    pub movie: Option<Vec<u8>>,
     /// Materials and settings: what and its value.
     pub inputs: Vec<(String, String)>,
     /// The plan, as `check` prints it.
@@ -135,7 +137,7 @@ pub fn to_html(data: &ReportData) -> String {
                 (expectations(summary))
                 (accuracy::passes(summary))
                 (pictures(&data.pictures))
-                (strip(&data.pictures))
+                (strip(&data.pictures, data.movie.as_deref()))
                 @if !figures.is_empty() {
                     section {
                         h2 { "Curves" }
@@ -241,13 +243,16 @@ fn pictures(pictures: &[Figure]) -> Markup {
     }
 }
 
-/// The body at some instants, in the colours of one range.
-fn strip(pictures: &[Figure]) -> Markup {
+/// The body at some instants, in the colours of one range, and as a movie in the same colours.
+fn strip(pictures: &[Figure], movie: Option<&[u8]>) -> Markup {
     let strip: Vec<&Figure> = pictures.iter().filter(|picture| picture.in_strip).collect();
     html! {
-        @if !strip.is_empty() {
+        @if !strip.is_empty() || movie.is_some() {
             section {
-                h2 { "Over time" (strip[0].magnified) }
+                h2 { "Over time" (strip.first().map_or("", |first| &first.magnified)) }
+                @if let Some(movie) = movie {
+                    figure.movie { img src=(figure::data_address(movie)) alt="movie of all frames"; }
+                }
                 div.strip {
                     @for Figure { title, png, .. } in &strip {
                         figure { figcaption { (title) } img src=(figure::data_address(png)) alt=(title); }

@@ -1,89 +1,16 @@
-//! `fractum new`: a folder with a case that runs as it stands, its mesh, and a geometry from which Gmsh makes meshes of other sizes.
-
-mod meshes;
+//! `fractum new`: the templates, or one of them in a folder.
 
 use std::path::PathBuf;
 
-use fractum::{ExitCode, Failure, say};
-use fractum_mesh::{Mesh, MshFormat, write_msh};
-use fractum_output::atomic;
-
-/// A case to start from.
-struct Template {
-    name: &'static str,
-    what: &'static str,
-    case: &'static str,
-    /// What makes the mesh; none of bodies that fractum packs.
-    mesh: Option<fn() -> Mesh>,
-    /// The geometry by which Gmsh makes such a mesh.
-    geometry: &'static str,
-    /// The study of it; empty where a single run is meant.
-    study: &'static str,
-}
-
-/// A template from its folder below `templates`.
-macro_rules! template {
-    ($name:literal, $what:literal, case alone) => {
-        Template {
-            name: $name,
-            what: $what,
-            case: include_str!(concat!("../../templates/", $name, "/case.toml")),
-            mesh: None,
-            geometry: "",
-            study: "",
-        }
-    };
-    ($name:literal, $what:literal, $mesh:path, study) => {
-        Template {
-            study: include_str!(concat!("../../templates/", $name, "/study.toml")),
-            ..template!($name, $what, $mesh)
-        }
-    };
-    ($name:literal, $what:literal, $mesh:path) => {
-        Template {
-            name: $name,
-            what: $what,
-            case: include_str!(concat!("../../templates/", $name, "/case.toml")),
-            mesh: Some($mesh),
-            geometry: include_str!(concat!("../../templates/", $name, "/part.geo")),
-            study: "",
-        }
-    };
-}
-
-const TEMPLATES: [Template; 15] = [
-    template!("plate", "plate with two holes pulled apart at rest; triangles", meshes::plate),
-    template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra", meshes::bracket),
-    template!("brazilian", "disc of rock split between platens at rest; triangles", meshes::brazilian),
-    template!("beam", "notched beam in three-point bending at rest; triangles", meshes::beam),
-    template!("bonded-ucs", "cylinder of bonded particles crushed at rest; no mesh", case alone),
-    template!("triaxial", "cylinder of bonded particles crushed under confinement in motion; no mesh", case alone),
-    template!("impact", "steel ball that hits a concrete slab; tetrahedra in motion, fragments", meshes::impact),
-    template!("quench", "hot ceramic plate in cold water; triangles in motion, heat", meshes::quench),
-    template!("shear", "rock joint sheared under pressure at rest; triangles, an interface", meshes::shear),
-    template!(
-        "tile",
-        "mortar tile on its edges, pressed by a stamp until it cracks; tetrahedra in motion",
-        meshes::tile
-    ),
-    template!(
-        "split-bar",
-        "rock between the bars of a Hopkinson test; triangles in motion, interfaces",
-        meshes::split_bar
-    ),
-    template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion", meshes::blast),
-    template!("tunnel", "blast hole beside a tunnel in stressed rock; triangles in motion", meshes::tunnel),
-    template!("hopper", "loose grains that flow out of a hopper; particles, walls of facets", meshes::hopper),
-    template!("study", "brittle bar with random flaws, pulled apart with twelve seeds; a study", meshes::study, study),
-];
+use fractum::{ExitCode, Failure, for_shell, say, template};
 
 /// Lists the templates, or writes one into a folder.
 ///
 /// # Errors
-/// An unknown name; a folder that has one of the files; a disk that cannot be written to.
-pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<ExitCode, Failure> {
-    let Some(name) = template else {
-        for Template { name, what, .. } in TEMPLATES {
+/// As [`template::write`].
+pub(crate) fn new(name: Option<&str>, folder: Option<PathBuf>) -> Result<ExitCode, Failure> {
+    let Some(name) = name else {
+        for (name, what) in template::all() {
             say!("{name:<12} {what}");
         }
         say!(
@@ -91,30 +18,10 @@ pub(crate) fn new(template: Option<&str>, folder: Option<PathBuf>) -> Result<Exi
         );
         return Ok(ExitCode::Done);
     };
-    let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
-        let names: Vec<&str> = TEMPLATES.iter().map(|template| template.name).collect();
-        return Err(Failure::input(format!("no template \"{name}\"; templates: {}", names.join(", "))));
-    };
-    let folder = folder.unwrap_or_else(|| PathBuf::from(name));
-    let mut files: Vec<(&str, Vec<u8>)> = vec![("case.toml", template.case.into())];
-    if let Some(make) = template.mesh {
-        let mut mesh = Vec::new();
-        write_msh(&make(), MshFormat::V4_1Ascii, &mut mesh).map_err(|error| Failure::input(error.to_string()))?;
-        files.extend([("part.msh", mesh), ("part.geo", template.geometry.into())]);
-    }
-    if !template.study.is_empty() {
-        files.push(("study.toml", template.study.into()));
-    }
-    if let Some((file, _)) = files.iter().find(|(file, _)| folder.join(file).exists()) {
-        let path = folder.join(file);
-        return Err(Failure::input(format!("{}: exists already; name another folder", path.display())));
-    }
-    atomic::create_folder(&folder)?;
-    for (file, bytes) in files {
-        atomic::write(&folder.join(file), &bytes)?;
-    }
-    say!("{}: {}", folder.display(), template.what);
-    let (command, file) = if template.study.is_empty() { ("run", "case.toml") } else { ("study", "study.toml") };
-    say!("next: fractum {command} {}", fractum::for_shell(&folder.join(file).display().to_string()));
+    let written = template::write(name, folder, false)?;
+    let folder = written.case.parent().unwrap_or(&written.case);
+    say!("{}: {}", folder.display(), written.what);
+    let (command, file) = written.study.map_or(("run", written.case.clone()), |study| ("study", study));
+    say!("next: fractum {command} {}", for_shell(&file.display().to_string()));
     Ok(ExitCode::Done)
 }

@@ -83,7 +83,8 @@ pub(crate) fn estimate(input: &mut Input, set_up: f64) -> Option<Estimate> {
         estimate.output += written.own + (written.beside - steps).max(0.0);
         start = case.solver.end;
     }
-    let pixels = pixels + report::pixels_over_time(output_frames);
+    let movie = if input.case.output.movie { report::pixels_of_movie(output_frames) } else { 0.0 };
+    let pixels = pixels + report::pixels_over_time(output_frames) + movie;
     estimate.output += slowness() * (PIXEL * pixels + FILES);
     Some(estimate)
 }

@@ -3,8 +3,10 @@
 use std::path::Path;
 
 use fractum_output::atomic::{self, Group};
+use fractum_output::notes::MOVIE;
 use fractum_output::study::compare::Family;
 pub(crate) use fractum_report::gallery::{Skin, draw, expected_pixels as pixels_at_end};
+pub(crate) use fractum_report::movie::expected_pixels as pixels_of_movie;
 use fractum_report::movie::{Movie, MovieSettings};
 pub(crate) use fractum_report::strip::{expected_pixels as pixels_over_time, strip};
 use fractum_report::{exhibits, folder, study};
@@ -36,6 +38,18 @@ pub(crate) fn add(folder: &Path, files: &mut Group) -> Result<(), Failure> {
 /// [`Failure::Input`] for a folder without frames or a size out of range; [`Failure::Write`].
 pub fn movie(folder: &Path, output: &Path, settings: MovieSettings) -> Result<Movie, Failure> {
     Ok(fractum_report::movie::movie(folder, output, settings)?)
+}
+
+/// Adds the movie of a run to the files of its folder, whose frames are written.
+///
+/// - `mode`: the natural vibration that swings, if it shows these
+///
+/// # Errors
+/// [`Failure::Input`] for frames that cannot be drawn.
+pub(crate) fn add_movie(folder: &Path, mode: Option<usize>, files: &mut Group) -> Result<(), Failure> {
+    let (_, bytes) = fractum_report::movie::film(folder, MovieSettings { mode, ..MovieSettings::default() })?;
+    files.add(&folder.join(MOVIE), &bytes);
+    Ok(())
 }
 
 /// Writes the page and the chart of a study.

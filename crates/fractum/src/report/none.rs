@@ -59,6 +59,19 @@ pub(crate) fn strip(_: &Path, _: Option<f64>, _: &dyn Fn(f64) -> String, _: &mut
     Vec::new()
 }
 
+/// The movie of a run: none.
+///
+/// # Errors
+/// Always.
+pub(crate) fn add_movie(_: &Path, _: Option<usize>, _: &mut Group) -> Result<(), Failure> {
+    Err(no_report())
+}
+
+/// Pixels of the movie.
+pub(crate) fn pixels_of_movie(_: f64) -> f64 {
+    0.0
+}
+
 /// Pixels of the pictures of the last instant.
 pub(crate) fn pixels_at_end(_: &Scene) -> f64 {
     0.0

@@ -12,6 +12,7 @@ use fractum_output::frames::cracks::{self, Columns, FacetHistory};
 use fractum_output::notes::{self, Notes, PictureNote};
 use fractum_output::number::{at_instant, instant_text, mode_text, quantity};
 use fractum_output::summary::{Breakage, Hashes, Status, Summary, hash_text};
+use fractum_output::warning::{Code, Warning};
 use fractum_scene::statics::{modes_of, show_mode};
 use fractum_scene::{Scene, fragment_size, ranks};
 
@@ -58,6 +59,7 @@ impl Simulation {
         let mut files = Group::default();
         let skin = self.skin();
         let pictures = skin.map_or(Ok(Vec::new()), |skin| self.draw(&pieces, skin, &mut files))?;
+        let movie = film(&mut self, &mut files)?;
         let mut summary = Summary {
             title: self.case.source.title.clone(),
             status,
@@ -92,6 +94,7 @@ impl Simulation {
             case_file: self.case.source.path.display().to_string(),
             plan: self.about.plan.wrapped(PLAN_WIDTH, str::to_owned),
             pictures,
+            movie,
             inputs: inputs_of(&self.case),
             plots: plots::notes(&self.case),
         };
@@ -182,6 +185,25 @@ impl Simulation {
         // The pictures show all of them.
         self.finish_pieces()
     }
+}
+
+/// The movie, where the case asks for one and it can be made; whether it is among the files.
+fn film(simulation: &mut Simulation, files: &mut Group) -> Result<bool, Failure> {
+    if !simulation.case.output.movie || !simulation.ranks.leads() {
+        return Ok(false);
+    }
+    let mode = simulation.solver.shows_modes().then_some(1);
+    let Simulation { scene, folder, phases, messages, .. } = simulation;
+    let made = if neighbours::is_divided(&scene.solid) {
+        Err("no process has the whole mesh".to_owned())
+    } else {
+        phases.timed(Part::Output, || report::add_movie(folder, mode, files)).map_err(|error| error.to_string())
+    };
+    let Err(why) = made else { return Ok(true) };
+    let found = Warning::new(Code::NoEffect, "output.movie", format!("no movie was made: {why}"));
+    let remedy = format!("fractum movie {} makes one of the frames, where they fit into memory", folder.display());
+    messages.warn(found.remedy(remedy))?;
+    Ok(false)
 }
 
 /// Characters in a line of the plan in the report.

@@ -157,7 +157,7 @@ pub(super) const KNOWN: &[Known] = &[
     },
     Known {
         name: "silicon-carbide",
-        what: "sintered ceramic, grains of 6 um",
+        what: "sintered ceramic SiC, grains of 6 um",
         kind: Kind::Specimen(&Specimen {
             density: exactly(3160.0, CARBIDE),
             young: exactly(415e9, CARBIDE),

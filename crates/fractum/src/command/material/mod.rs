@@ -8,7 +8,7 @@ use fractum_case::{Dimension, nearest, parse_quantity};
 use fractum_math::elementary::{ln, pow};
 use fractum_output::number::{percent, quantity};
 
-use self::known::{KNOWN, Kind, Measured, Rock, Specimen};
+use self::known::{KNOWN, Kind, Known, Measured, Rock, Specimen};
 
 /// Arguments of `fractum material`.
 #[derive(Args)]
@@ -123,12 +123,34 @@ pub(crate) fn run(arguments: &MaterialArguments) -> Result<ExitCode, Failure> {
     Ok(ExitCode::Done)
 }
 
+/// Materials that may be meant by a name: concrete by its class, those that share a word with it, or the nearest one.
+fn meant(name: &str) -> Option<String> {
+    let words = |text: &str| -> Vec<String> {
+        let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.len() > 2);
+        words.map(str::to_lowercase).collect()
+    };
+    let class = name.strip_prefix(['C', 'c']).and_then(|rest| rest.split('/').next()?.parse::<u32>().ok());
+    if let Some(strength) = class {
+        return Some(format!("concrete --compressive-strength \"{strength} MPa\""));
+    }
+    let own = words(name);
+    let shares =
+        |known: &&Known| own.iter().any(|word| words(known.name).contains(word) || words(known.what).contains(word));
+    let near: Vec<&str> = KNOWN.iter().filter(shares).map(|known| known.name).collect();
+    if near.is_empty() {
+        nearest(name, KNOWN.iter().map(|known| known.name)).map(str::to_owned)
+    } else {
+        Some(near.join(" or "))
+    }
+}
+
 fn of_name(name: &str, arguments: &MaterialArguments) -> Result<Proposal, Failure> {
-    let Some(known) = KNOWN.iter().find(|known| known.name == name) else {
-        let names = KNOWN.iter().map(|known| known.name);
-        let hint = nearest(name, names.clone()).map_or(";".to_owned(), |near| format!("; did you mean {near}?"));
-        let names: Vec<&str> = names.collect();
-        return Err(Failure::input(format!("no material \"{name}\"{hint} known: {}, own", names.join(", "))));
+    let plain = name.to_lowercase().replace([' ', '_'], "-");
+    let Some(known) = KNOWN.iter().find(|known| known.name == plain) else {
+        let names: Vec<&str> = KNOWN.iter().map(|known| known.name).collect();
+        let hint = meant(name).map_or(";".to_owned(), |meant| format!("; did you mean {meant}?"));
+        let own = "own takes the numbers of any other";
+        return Err(Failure::input(format!("no material \"{name}\"{hint} known: {}, own; {own}", names.join(", "))));
     };
     match &known.kind {
         Kind::Concrete => concrete(pressure(&arguments.compressive_strength, COMPRESSIVE)?),

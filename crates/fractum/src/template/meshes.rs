@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use fractum_math::Vec3;
 use fractum_math::elementary::{asin, sin_cos};
 use fractum_mesh::generate::{Outline, Piece, fill, mirrored_cells};
-use fractum_mesh::{Group, Mesh, joined, scrambled};
+use fractum_mesh::{Group, Mesh, joined, joined_bodies, scrambled};
 
 /// The outline of a rectangle, counter-clockwise from its lowest corner, with the groups of its sides.
 fn rectangle([left, low]: [f64; 2], [right, high]: [f64; 2], [bottom, east, top, west]: [&'static str; 4]) -> Outline {
@@ -98,7 +98,7 @@ pub(super) fn split_bar() -> Mesh {
     // The other bar is a mirror of such a one.
     transmission.nodes.iter_mut().for_each(|node| node.x = -node.x);
     transmission.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    side_by_side([incident, specimen, transmission])
+    side_by_side(&mut [incident, specimen, transmission])
 }
 
 /// A cone with a wall above it, without a lid.
@@ -119,24 +119,80 @@ pub(super) fn quench() -> Mesh {
     fill(&[strip], "plate", &|_| 0.07, 1)
 }
 
+/// Middles and radii of grains.
+const GRAINS: [([f64; 2], f64); 13] = [
+    ([-27.0, 9.0], 5.0),
+    ([-13.0, 9.0], 6.0),
+    ([13.0, 9.0], 5.5),
+    ([26.0, 9.0], 4.5),
+    ([-22.0, 25.0], 5.5),
+    ([-6.0, 23.5], 4.5),
+    ([6.5, 25.0], 4.0),
+    ([20.0, 23.0], 5.5),
+    ([-28.0, 41.0], 4.5),
+    ([-13.0, 40.0], 5.0),
+    ([1.0, 38.0], 5.5),
+    ([15.0, 40.0], 5.0),
+    ([29.0, 38.0], 4.5),
+];
+
+/// A notched beam and the grains in it.
+pub(super) fn aggregate() -> Mesh {
+    let size = |[x, _]: [f64; 2]| graded(x.abs(), [1.3, 10.0], [36.0, 80.0]);
+    let point = |to, end| Piece { end, ..Piece::line(to, "") };
+    let pieces = vec![
+        point([-80.0, 0.0], "left"),
+        point([-1.5, 0.0], ""),
+        point([-1.5, 15.0], ""),
+        point([1.5, 15.0], ""),
+        point([1.5, 0.0], ""),
+        point([80.0, 0.0], "right"),
+        point([100.0, 0.0], ""),
+        point([100.0, 50.0], ""),
+        point([2.0, 50.0], ""),
+        Piece::line([-2.0, 50.0], "nose"),
+        point([-100.0, 50.0], ""),
+        point([-100.0, 0.0], ""),
+    ];
+    let beam = Outline { start: [-100.0, 0.0], pieces };
+    let holes = GRAINS.iter().map(|&(centre, radius)| hole(centre, radius, ""));
+    let mortar = fill(&std::iter::once(beam).chain(holes).collect::<Vec<_>>(), "mortar", &size, 1);
+    let grain = |&([x, y], radius): &([f64; 2], f64)| {
+        let outline = Outline { start: [x + radius, y], pieces: vec![Piece::arc([x, y], 2.0 * PI, "")] };
+        fill(&[outline], "aggregate", &size, 1)
+    };
+    let mut bodies: Vec<Mesh> = std::iter::once(mortar).chain(GRAINS.iter().map(grain)).collect();
+    joined_bodies(&side_by_side(&mut bodies), &["mortar", "aggregate"]).0
+}
+
 /// Two halves with nodes of their own where they meet.
 pub(super) fn shear() -> Mesh {
     let half = |low: f64, sides, name| fill(&[rectangle([0.0, low], [100.0, low + 25.0], sides)], name, &|_| 4.0, 1);
-    side_by_side([half(0.0, ["bottom", "", "", ""], "lower"), half(25.0, ["", "", "top", ""], "upper")])
+    side_by_side(&mut [half(0.0, ["bottom", "", "", ""], "lower"), half(25.0, ["", "", "top", ""], "upper")])
 }
 
-/// One mesh of plane bodies, with nodes of their own where they meet.
-fn side_by_side<const N: usize>(mut bodies: [Mesh; N]) -> Mesh {
-    let [mut nodes, mut elements, mut groups] = [0; 3];
-    for body in &mut bodies {
+/// One mesh of plane bodies, with nodes of their own where they meet. Groups of one name become one.
+fn side_by_side(bodies: &mut [Mesh]) -> Mesh {
+    let [mut nodes, mut elements] = [0; 2];
+    let mut names: Vec<String> = Vec::new();
+    for body in bodies.iter_mut() {
         body.node_tags.iter_mut().for_each(|tag| *tag += nodes);
-        body.line_tags.iter_mut().chain(&mut body.triangle_tags).for_each(|tag| *tag += elements);
-        body.groups.iter_mut().for_each(|group| group.tag += groups as i32);
+        body.point_tags
+            .iter_mut()
+            .chain(&mut body.line_tags)
+            .chain(&mut body.triangle_tags)
+            .for_each(|tag| *tag += elements);
+        for group in &mut body.groups {
+            let known = names.iter().position(|name| *name == group.name);
+            group.tag = 1 + known.unwrap_or(names.len()) as i32;
+            if known.is_none() {
+                names.push(group.name.clone());
+            }
+        }
         nodes += body.nodes.len() as u64;
-        elements += (body.lines.len() + body.triangles.len()) as u64;
-        groups += body.groups.len() as u64;
+        elements += (body.points.len() + body.lines.len() + body.triangles.len()) as u64;
     }
-    joined(&bodies).expect("the bodies have numbers of their own")
+    joined(bodies).expect("the bodies have numbers of their own")
 }
 
 pub(super) fn bracket() -> Mesh {
