@@ -106,9 +106,11 @@ impl Simulation {
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
         self.warn_of_cut_bands()?;
+        self.warn_of_coarse_cracks()?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
         self.warn_of_giving_way()?;
+        self.warn_of_used_up_steps()?;
         if matches!(end, End::Finished(_)) {
             self.warn_of_servos()?;
             self.warn_of_idle_probes()?;
@@ -158,6 +160,17 @@ impl Simulation {
             found
                 .remedy("its strength is the peak; to see what follows, move a support, or choose kind = \"explicit\""),
         )
+    }
+
+    /// Warns of a run at rest that ends before its end, since it has taken as many steps as it may.
+    fn warn_of_used_up_steps(&mut self) -> Result<(), Failure> {
+        let (time, end) = (self.time(), self.case.solver.end);
+        if !self.solver.has_used_up_its_steps() || time >= end * (1.0 - 1e-9) {
+            return Ok(());
+        }
+        let text = format!("the run ends at {}, as it has taken as many steps as it may", self.instant(time));
+        let found = Warning::new(Code::EndsEarly, "solver.max_steps", text);
+        self.warn(found.remedy("allow more steps, or look where they became small (column dt of the history)"))
     }
 
     /// Warns of rigid bodies that do not press at the end as their servos should.
@@ -260,6 +273,31 @@ impl Simulation {
         found.into_iter().try_for_each(|found| self.warn(found))
     }
 
+    /// Warns of cracks that interfaces have opened within solids, with few faces from their middle to their edge.
+    fn warn_of_coarse_cracks(&mut self) -> Result<(), Failure> {
+        let (solid, interfaces) = (&self.scene.solid, self.scene.interfaces());
+        let Some(crack) = interfaces.coarsest_crack(solid).filter(|crack| crack.is_missing() > OPENS_TOO_LITTLE) else {
+            return Ok(());
+        };
+        let [plain, smoothed] = crack.missing.map(|part| quantity(AS_IT_SHOULD / part * crack.size, "m"));
+        let text = format!(
+            "it has opened over {} with faces of {} at the edge of that within solids: linear elements are stiff there, and open such a crack by some {} too little",
+            quantity(crack.area, "m^2"),
+            quantity(crack.size, "m"),
+            percent(crack.is_missing())
+        );
+        let remedy = if crack.is_smoothed {
+            format!("faces of {smoothed} there leave {} of it", percent(AS_IT_SHOULD))
+        } else {
+            format!(
+                "faces of {plain} there leave {} of it, or of {smoothed} where the bodies beside have formulation = \"smoothed\"",
+                percent(AS_IT_SHOULD)
+            )
+        };
+        let place = format!("interface \"{}\"", interfaces.kinds()[crack.kind as usize].name);
+        self.warn(Warning::new(Code::CoarseMesh, place, text).remedy(remedy))
+    }
+
     /// Tells at which rates of strain edges began to break, where strength grows with them, and warns of elements too large for it.
     fn tell_rates(&mut self) -> Result<(), Failure> {
         let solid = &self.scene.solid;
@@ -356,6 +394,9 @@ impl Simulation {
 const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
+/// Part of its volume by which a crack along an interface may open too little before it is told, and that to which the remedy brings it.
+const OPENS_TOO_LITTLE: f64 = 0.1;
+const AS_IT_SHOULD: f64 = 0.05;
 /// Share of the damage of a phase field at the nodes of other bodies above which its cracks run along them.
 const AT_BORDERS: f64 = 0.2;
 /// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
