@@ -12,6 +12,8 @@ const POSITIONS: usize = 20;
 const LOOKS: usize = 1000;
 /// Halvings of such an interval.
 const HALVINGS: usize = 60;
+/// Intervals where the size of a change counts alone.
+const FEW_LOOKS: usize = 50;
 
 /// What drives a run.
 enum Drive<'a> {
@@ -32,13 +34,14 @@ pub(super) fn turns(context: &Context<'_>) -> Vec<f64> {
     for drive in drives(context).into_iter().chain(heat.chain(liquid).map(Drive::Value)) {
         let (Drive::Value(function) | Drive::Rate(function)) = drive;
         kinks(function, &mut found);
-        let positions = if function.depends_on_position() { &positions[..] } else { &[Vec3::zeros()] };
-        for &position in positions.iter().filter(|_| function.depends_on_time()) {
-            match drive {
-                Drive::Rate(_) => signs(|t| function.value(t, position), [begin, end], &mut found),
-                Drive::Value(_) if has_table(function) => {}
-                Drive::Value(_) => extremes(|t| function.value(t, position), [begin, end], &mut found),
-            }
+        if !function.depends_on_time() {
+            continue;
+        }
+        let position = widest(function, [begin, end], &positions);
+        match drive {
+            Drive::Rate(_) => signs(|t| function.value(t, position), [begin, end], &mut found),
+            Drive::Value(_) if has_table(function) => {}
+            Drive::Value(_) => extremes(|t| function.value(t, position), [begin, end], &mut found),
         }
     }
     let same = 1e-9 * (end - begin);
@@ -46,6 +49,19 @@ pub(super) fn turns(context: &Context<'_>) -> Vec<f64> {
     found.sort_by(f64::total_cmp);
     found.dedup_by(|next, before| *next - *before <= same);
     found
+}
+
+/// The position at which a function changes most: a load that travels turns everywhere at another instant.
+fn widest(function: &TimeFunction, [begin, end]: [f64; 2], positions: &[Vec3]) -> Vec3 {
+    let range = |position: &Vec3| {
+        let at = |look: usize| function.value(begin + (end - begin) * (look as f64 / FEW_LOOKS as f64), *position);
+        let [low, high] = (0..=FEW_LOOKS)
+            .map(at)
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+        high - low
+    };
+    let all = positions.iter().filter(|_| function.depends_on_position());
+    all.max_by(|a, b| range(a).total_cmp(&range(b))).copied().unwrap_or_default()
 }
 
 /// Whether a load or a motion goes back before the end, so that the state there is not the farthest one.
