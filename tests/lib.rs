@@ -35,6 +35,7 @@ pub fn statics(step: f64, end: f64) -> StaticSettings {
     StaticSettings {
         control: Control::Time,
         step,
+        turns: Vec::new(),
         end,
         most_steps: 2000,
         tolerance: 1e-10,

@@ -119,6 +119,7 @@ pub(crate) fn at_rest(step: f64, end: f64) -> StaticSettings {
     StaticSettings {
         control: Control::Time,
         step,
+        turns: Vec::new(),
         end,
         most_steps: 1_000_000,
         tolerance: 1e-9,

@@ -70,7 +70,9 @@ pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };
 pub use inlet::{Arrivals, Entered, EntryMotion, Inlet};
-pub use interfaces::{FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState};
+pub use interfaces::{
+    FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState, OpenedCrack,
+};
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use liquid::{Injection, InjectionDrive, Liquid, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState};
 pub use measure::counts::{CountKind, Counts};

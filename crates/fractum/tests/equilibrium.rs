@@ -173,6 +173,7 @@ fn a_bar_that_snaps_back_moves_to_the_state_that_the_path_reaches_and_its_ledger
         let ended = Workplace::new(&brittle_bar(&limited)).fractum(&["run", "case.toml", "-o", "out"]);
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         assert!(steps > 400 && ended.stdout.contains("solver.max_steps allows no more") != ends, "{}", ended.stdout);
+        assert_eq!(ended.stderr.contains("as many steps as it may"), !ends, "{}", ended.stderr);
         assert_eq!(ended.stdout.contains("is the end of the run"), ends, "{}", ended.stdout);
     }
     // Without motion the run says where it ends.

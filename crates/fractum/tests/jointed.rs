@@ -212,14 +212,72 @@ where = "y > 0.6 m"
 displacement = { x = { ramp = [["0 s", 0], ["0.25 s", "1 mm"], ["0.75 s", "-1 mm"], ["1 s", 0]] } }
 "#;
 
-/// The state at the end is not all that counts: what slides has rubbed on its way.
+/// The state at the end is not all that counts: what slides has rubbed on its way, however its turns lie between steps.
 #[test]
 fn a_joint_that_is_sheared_and_brought_back_has_rubbed_without_a_step_being_asked_for() {
-    let one = run(&place(SHEARED, &structured_rectangle([4, 4], [1.0, 1.0], None)), "one", "1");
     let friction = 30f64.to_radians().tan();
-    let largest = one["probes"]["largest"]["final"].as_f64().unwrap();
-    assert!((largest / friction - 1.0).abs() < 0.01, "{largest}");
-    // Four ways of 1 mm, less what is elastic as it turns; steps of 0.08 mm see the turns to one of them each.
-    let work = energy(&one, "friction") / (friction * 1e6 * 4e-3);
-    assert!((0.8..1.0).contains(&work), "{work}");
+    let begin = SHEARED.find("displacement =").unwrap();
+    let ways = [
+        SHEARED[begin..].trim_end(),
+        r#"displacement = { x = { ramp = [["0 s", 0], ["0.03 s", 0], ["0.267 s", "1 mm"], ["0.751 s", "-1 mm"], ["1 s", 0]] } }"#,
+        r#"displacement = { x = "1 mm*if(t < 0.25 s, 4*t/1 s, if(t < 0.75 s, 2 - 4*t/1 s, 4*t/1 s - 4))" }"#,
+        r#"velocity = { x = { ramp = [["0 s", "4 mm/s"], ["0.25 s", "4 mm/s"], ["0.2501 s", "-4 mm/s"], ["0.75 s", "-4 mm/s"], ["0.7501 s", "4 mm/s"]] } }"#,
+    ];
+    for way in ways {
+        let place = place(&format!("{}{way}\n", &SHEARED[..begin]), &structured_rectangle([4, 4], [1.0, 1.0], None));
+        let one = run(&place, "one", "1");
+        let largest = one["probes"]["largest"]["final"].as_f64().unwrap();
+        assert!((largest / friction - 1.0).abs() < 0.01, "{way}: {largest}");
+        // Four ways of 1 mm, less what is elastic as it turns, five times: 0.5 m of rock below and 0.25 m above under a shear of 10 GPa.
+        let exact = friction * 1e6 * (4e-3 - 5.0 * friction * 1e6 * 0.75 / 10e9);
+        let work = energy(&one, "friction") / exact;
+        assert!((work - 1.0).abs() < 0.04, "{way}: {work}");
+        let fine = place.fractum(&["run", "case.toml", "--quiet", "-o", "fine", "--set", "solver.step=4 ms"]);
+        assert_eq!(fine.code, Some(0), "{}", fine.stderr);
+        let work = energy(&one, "friction") / energy(&summary(&place, "fine"), "friction");
+        assert!((work - 1.0).abs() < 0.01, "{way}: {work} of that of small steps");
+    }
+}
+
+#[test]
+fn a_joint_that_would_wear_over_metres_is_told() {
+    for (key, slip, told) in [("peak_slip", "2 mm", 0), ("peak_slip", "2 m", 1), ("dilation_slip", "0.3 m", 1)] {
+        let rough =
+            format!("= \"30 deg\", joint_roughness = 10, joint_wall_strength = \"100 MPa\", {key} = \"{slip}\" }}]");
+        let smooth = format!("= \"30 deg\", dilation_angle = \"5 deg\", {key} = \"{slip}\" }}]");
+        let law = if key == "peak_slip" { rough } else { smooth };
+        let place = place(&SHEARED.replace("= \"30 deg\" }]", &law), &structured_rectangle([4, 4], [1.0, 1.0], None));
+        let ended = place.fractum(&["check", "case.toml"]);
+        let said = format!("{}{}", ended.stdout, ended.stderr);
+        assert_eq!(said.matches("[unusual-value]").count(), told, "{said}");
+        assert!(told == 0 || said.contains(&format!(".{key} = ")), "{said}");
+    }
+}
+
+/// A joint of 0.4 m in a block of 2 m, with water in it.
+const SLIT: &str = r#"fractum = 1
+mesh = { file = "bar.msh", joints = [{ name = "slit", table = [["0.8 m", "1 m", "1.2 m", "1 m"]] }] }
+materials = { rock = { density = "2600 kg/m^3", young_modulus = "20 GPa", poisson_ratio = 0.2 } }
+bodies = [{ name = "rock", kind = "solid", group = "body", material = "rock" }]
+solver = { kind = "static", end = "1 s" }
+interfaces = [{ group = "slit", bonded = false, pressure = "1 MPa*t/1 s" }]
+supports = [{ group = "y-", fix = "xy" }]
+"#;
+
+#[test]
+fn a_crack_of_few_faces_is_told_with_the_size_that_it_asks_for() {
+    let told = |cells: u32, formulation: &str| {
+        let text = SLIT.replace("\"rock\" }]", &format!("\"rock\", formulation = \"{formulation}\" }}]"));
+        let place = place(&text, &structured_rectangle([cells; 2], [2.0, 2.0], None));
+        run(&place, "one", "1");
+        summary(&place, "one")["warnings"].as_array().unwrap().clone()
+    };
+    let all = told(20, "standard");
+    let [one] = all.as_slice() else { panic!("{all:?}") };
+    assert!(one["code"] == "coarse-mesh" && one["where"] == "interface \"interface-1\"", "{one}");
+    // Two faces of 0.1 m from the middle to the tip: 0.7/2 of the volume; a twentieth of it asks for fourteen.
+    let [text, remedy] = ["text", "remedy"].map(|key| one[key].as_str().unwrap());
+    assert!(text.contains("by some 35 % too little") && remedy.starts_with("faces of 14.29 mm"), "{one}");
+    assert_eq!(told(20, "smoothed").len(), 1);
+    assert_eq!(told(80, "smoothed").len(), 0);
 }

@@ -302,6 +302,15 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
                 ("[solver]", "[[loads]]\ngravity = { x = \"-9.81 m/s^2\" }\n[solver]"),
             ],
         ),
+        checked(
+            "unheld",
+            bar(),
+            &[
+                ("fix = \"PLANE\"", "absorbing = true"),
+                (far_support, ""),
+                ("[solver]", "[[loads]]\ngravity = { x = \"-9.81 m/s^2\" }\n[solver]"),
+            ],
+        ),
         checked("no-effect", bar(), &[("[[bodies]]", FRACTURE)]),
         checked("no-effect", bar(), &[("[[bodies]]", BROKEN_PLATE)]),
         checked("unused", bar(), &[("[[bodies]]", "[pulses]\ncut = \"1 MPa\"\n[[bodies]]")]),

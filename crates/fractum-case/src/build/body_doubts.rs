@@ -153,7 +153,8 @@ pub(super) fn moved_as_a_whole(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Opti
     Some(note.remedy(format!("hold another side along {along}")))
 }
 
-/// Solids in motion that lasting forces or a weight push along an axis along which no support holds them, though supports act on them.
+/// Solids in motion that lasting forces or a weight push along an axis along which no support holds them, though supports act on them. A
+/// weight beside absorbing supports alone is told of a short run too.
 pub(super) fn pushed_away(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     let alone = case.bodies.iter().all(|body| matches!(body.kind, BodyKind::Solid(_)));
     let moves = case.solver.kind == SolverKind::Explicit && case.later.is_empty() && case.in_situ.is_none();
@@ -167,7 +168,12 @@ pub(super) fn pushed_away(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Di
         return None;
     }
     let (passage, end) = (passage(case, mesh, bodies), case.solver.end);
-    if end < PASSAGES * passage {
+    // What stands for ground that goes on should bear a weight from the start.
+    let absorbs =
+        |support: &Support| support.surface.as_ref().is_some_and(|own| own.value == SurfaceSupport::Absorbing);
+    let grounded = case.supports.iter().any(absorbs);
+    let soon = end < PASSAGES * passage;
+    if soon && !grounded {
         return None;
     }
     let lies_around = bodies.iter().any(|body| body.solid.is_axisymmetric());
@@ -186,9 +192,10 @@ pub(super) fn pushed_away(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Di
     };
     let (axis, place) = (0..3).filter(free).find_map(|axis| {
         let mut along = case.loads.iter().filter_map(|load| match &load.kind {
-            LoadKind::Force { force: components, .. }
-            | LoadKind::Traction { traction: components, .. }
-            | LoadKind::Gravity { acceleration: components } => components[axis].as_ref(),
+            LoadKind::Gravity { acceleration: components } => components[axis].as_ref(),
+            LoadKind::Force { force: components, .. } | LoadKind::Traction { traction: components, .. } if !soon => {
+                components[axis].as_ref()
+            }
             _ => None,
         });
         let first = along.next()?;

@@ -18,6 +18,8 @@ use crate::{Diagnostic, Diagnostics, Place, nearest};
 
 /// Elements in a process zone below which it is not resolved.
 const IN_ZONE: f64 = 3.0;
+/// Slip over the largest extent of the solids beyond which no joint wears or rises.
+const LONG: f64 = 0.1;
 /// How much stiffer than an element an interface is at rest that is to be stiff: it gives way by a hundredth of one.
 const FIRM: f64 = 100.0;
 /// The same of a bonded one that liquid flows in: what it gives way to the stress that presses on it counts as its opening.
@@ -219,8 +221,20 @@ pub(super) fn doubts(context: &Context<'_>, scene: &Scene) -> Vec<Diagnostic> {
                 "where it slides steadily its vibrations make the mean shear force too small: set [damping], or load it at rest",
             ));
         }
-        let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };
         let extent = extent(&scene.solid);
+        let law = &interface.law;
+        let slips = [("peak_slip", law.roughness.map(|own| own.peak_slip)), ("dilation_slip", Some(law.dilation_slip))];
+        for (key, slip) in slips {
+            if let Some(slip) = slip.filter(|slip| slip.is_finite() && *slip > LONG * extent) {
+                let [slip, extent] = [slip, extent].map(|length| quantity(length, "m"));
+                let found = format!(".{key} = {slip}, beside solids of {extent}");
+                let note = Diagnostic::warning(Code::UnusualValue, &interface.place, found);
+                doubts.push(note.remedy(
+                    "joints wear and rise within a hundredth of their length; check the unit of the slip and mesh.unit",
+                ));
+            }
+        }
+        let Some((zone, size)) = process_zone(&scene.solid, interfaces, kind) else { continue };
         if zone > ZONES * extent {
             let [zone, extent] = [zone, extent].map(|length| quantity(length, "m"));
             let found = format!(": its process zone E G_I/ft^2 is {zone} long, beside solids of {extent}");

@@ -41,6 +41,7 @@ mod subcycling;
 mod surface_supports;
 mod ties;
 mod tool_overlaps;
+mod turns;
 
 pub use contacts::PreparedFacets;
 pub use division::{Replication, SolidDivision, cannot_divide, divide, replicated_bodies, replication};

@@ -1,21 +1,19 @@
 //! What a quasi-static run needs, and what it cannot do.
 
 use fractum_fem::{LocalDamping, NotSecant, Solid};
-use fractum_math::Vec3;
 use fractum_scene::statics::{self, ModesSettings, NoEquilibrium, StaticSettings};
 use fractum_scene::{Bonded, BondedStaticSettings, Scene};
 
 use super::Context;
 use super::bodies::Numbering;
-use crate::model::{Body, BodyKind, BondLawKind, Control, Damping, Motion, SolverKind};
-use crate::{Place, TimeFunction};
+use super::turns::{turns, turns_back};
+use crate::Place;
+use crate::model::{Body, BodyKind, BondLawKind, Control, Damping, SolverKind};
 
 /// Relative residual of iterative linear solutions.
 const LINEAR_TOLERANCE: f64 = 1e-8;
 /// Steps of the load parameter where the way to the end counts.
 const STEPS: f64 = 50.0;
-/// Positions at which loads and motions are looked at for whether they go back.
-const POSITIONS: usize = 20;
 
 /// Settings of the static solver; none for other solvers, or with errors noted.
 pub(super) fn statics(context: &mut Context<'_>, solid: &Solid, numbering: &Numbering) -> Option<StaticSettings> {
@@ -96,6 +94,7 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
             None => statics::Control::Time,
         },
         step: solver.step.as_ref().map_or(whole, |step| step.value.min(solver.end)),
+        turns: turns(context),
         end: solver.end,
         most_steps: options.most_steps,
         tolerance: options.tolerance,
@@ -104,28 +103,6 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
         damping: given.then_some(LocalDamping { local, mass_rate: mass }),
         no_equilibrium: options.no_equilibrium,
     })
-}
-
-/// Whether a load or a motion goes back before the end, so that the state there is not the farthest one.
-fn turns_back(context: &Context<'_>) -> bool {
-    let (case, nodes) = (context.case, &context.mesh.nodes);
-    let times = [case.solver.begin, case.solver.end];
-    let positions: Vec<Vec3> = nodes.iter().step_by(nodes.len().div_ceil(POSITIONS).max(1)).copied().collect();
-    let moves_back = |function: &TimeFunction| function.changes_sign(times, &positions);
-    let mut motions = case.supports.iter().flat_map(|support| support.motion.iter().flatten());
-    let mut loads = case.loads.iter().flat_map(|load| load.kind.functions());
-    let mut pressures = case.interfaces.iter().filter_map(|interface| interface.pressure.as_ref());
-    let mut rigid = case.bodies.iter().filter_map(|body| match &body.kind {
-        BodyKind::Rigid(rigid) => Some(rigid),
-        _ => None,
-    });
-    motions.any(|motion| match &motion.value {
-        Motion::Displacement(function) => function.turns(times, &positions),
-        Motion::Velocity(function) => moves_back(function),
-        Motion::Fixed => false,
-    }) || loads.any(|function| function.value.turns(times, &positions))
-        || pressures.any(|(function, _)| function.value.turns(times, &positions))
-        || rigid.any(|rigid| rigid.functions().any(|function| moves_back(&function.value)))
 }
 
 /// Settings of the solver that brings a bonded body from break to break; none for other bodies and solvers, or with

@@ -29,7 +29,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("solver.end", K::Quantity(D::TIME), "required", "End of the run, > 0; not with kind = \"modes\""),
     key("solver.safety", K::Quantity(D::NONE), "0.8", "Factor on the stable time step, > 0 and at most 2; above 1 is unstable"),
     key("solver.time_step", K::Choice(names::<TimeStep>), "\"power-iteration\"", "How the stable step is found: for the whole mesh or all bonds, or rigorously by the worst element or particle"),
-    key("solver.step", K::Quantity(D::TIME), "", "Explicit: fixed time step, > 0, instead of safety times the stable one; static: largest step, by default 1/50 of the run (of the stage) where something may break or slide, heat flows, or a load or motion goes back before the end; else the whole of it"),
+    key("solver.step", K::Quantity(D::TIME), "", "Explicit: fixed time step, > 0, instead of safety times the stable one; static: largest step, by default 1/50 of the run (of the stage) where something may break or slide, heat flows, or a load or motion goes back before the end; else the whole of it. Steps end where a table has a kink, and begin small there"),
     key("solver.subcycling", K::Flag, "false", "Explicit: where a mesh of solids is graded, its fine elements take several steps while the others take one"),
     key("solver.initial_overlap", K::Choice(names::<InitialOverlap>), "\"push\"", "Explicit. push: initial overlaps repel from the first step. keep: the initial overlap is the force-free distance until the pair separates"),
     key("solver.domain", K::Table, "", "Explicit: box outside of which free pieces of solids and bonded bodies, discrete elements and loose particles leave the run"),

@@ -12,6 +12,7 @@ pub(crate) mod in_situ;
 mod inside;
 pub(crate) mod joints;
 pub(crate) mod motion;
+mod opened;
 pub(crate) mod reading;
 pub(crate) mod rest;
 
@@ -20,6 +21,7 @@ use fractum_kernels::interface::{InterfaceForce, InterfaceLaw, InterfaceState};
 use fractum_math::{Mat3, Vec3, connected};
 
 pub use inside::InsidePressure;
+pub use opened::OpenedCrack;
 pub use reading::{FaceReading, InterfacesState};
 
 /// What the faces of an interface have in common.

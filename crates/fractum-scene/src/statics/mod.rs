@@ -314,7 +314,7 @@ impl StaticSolver {
         loop {
             let opens = if intact && by_path { self.opens(scene) } else { None };
             let at_onset = edges_at_onset || opens.is_some();
-            let longest = (self.settings.end - scene.clock.time).min(self.settings.step * self.pace.part);
+            let longest = self.settings.longest(scene.clock.time, self.pace.part);
             // A path stops just below the onset of damage, which may be its peak, and just above it where equilibrium goes on there.
             let growth = match intact {
                 true if by_path && !at_onset => -ONSET,

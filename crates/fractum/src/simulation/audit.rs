@@ -106,9 +106,11 @@ impl Simulation {
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
         self.warn_of_cut_bands()?;
+        coarse_crack(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
         self.warn_of_giving_way()?;
+        used_up_steps(self).into_iter().try_for_each(|found| self.warn(found))?;
         if matches!(end, End::Finished(_)) {
             self.warn_of_servos()?;
             self.warn_of_idle_probes()?;
@@ -356,11 +358,48 @@ impl Simulation {
 const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
+/// Part of its volume by which a crack along an interface may open too little before it is told, and that to which the remedy brings it.
+const OPENS_TOO_LITTLE: f64 = 0.1;
+const AS_IT_SHOULD: f64 = 0.05;
 /// Share of the damage of a phase field at the nodes of other bodies above which its cracks run along them.
 const AT_BORDERS: f64 = 0.2;
 /// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
 const MOSTLY_SINGLE: f64 = 0.5;
 const VISIBLY_SINGLE: f64 = 0.05;
+
+/// A crack that a pressure has opened along an interface within solids, with few faces from its middle to its edge.
+fn coarse_crack(scene: &Scene) -> Option<Warning> {
+    let interfaces = scene.interfaces();
+    let crack = interfaces.coarsest_crack(&scene.solid).filter(|crack| crack.is_missing() > OPENS_TOO_LITTLE)?;
+    let [plain, smoothed] = crack.missing.map(|part| quantity(AS_IT_SHOULD / part * crack.size, "m"));
+    let text = format!(
+        "it has opened over {} with faces of {} at the edge of that within solids: linear elements are stiff there, and open such a crack by some {} too little",
+        quantity(crack.area, "m^2"),
+        quantity(crack.size, "m"),
+        percent(crack.is_missing())
+    );
+    let left = percent(AS_IT_SHOULD);
+    let remedy = if crack.is_smoothed {
+        format!("faces of {smoothed} there leave {left} of it")
+    } else {
+        format!(
+            "faces of {plain} there leave {left} of it, or of {smoothed} where the bodies beside have formulation = \"smoothed\""
+        )
+    };
+    let place = format!("interface \"{}\"", interfaces.kinds()[crack.kind as usize].name);
+    Some(Warning::new(Code::CoarseMesh, place, text).remedy(remedy))
+}
+
+/// A run at rest that ends before its end, since it has taken as many steps as it may.
+fn used_up_steps(run: &Simulation) -> Option<Warning> {
+    let time = run.time();
+    if !run.solver.has_used_up_its_steps() || time >= run.case.solver.end * (1.0 - 1e-9) {
+        return None;
+    }
+    let text = format!("the run ends at {}, as it has taken as many steps as it may", run.instant(time));
+    let found = Warning::new(Code::EndsEarly, "solver.max_steps", text);
+    Some(found.remedy("allow more steps, or look where they became small (column dt of the history)"))
+}
 
 /// Probes that had no value at any instant, or were infinite: of expressions those for which all that they take had good ones.
 fn undefined_probes(case: &Case, recorder: &Recorder) -> Vec<Warning> {

@@ -73,7 +73,7 @@ impl StaticSolver {
         loop {
             let present = scene.clock.time;
             let begins = !scene.optional.liquid.as_ref().is_some_and(|liquid| liquid.state.has_begun);
-            let longest = (self.settings.end - present).min(self.settings.step * self.pace.part);
+            let longest = self.settings.longest(present, self.pace.part);
             let dt = if begins { 0.0 } else { longest };
             if let Some((field, state, iterations)) = self.wet_step(wet, scene, present + dt, dt)? {
                 if iterations <= EASY {
