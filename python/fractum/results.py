@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from . import tables
+from . import tables, view
 from .vtk import Frame
 
 
@@ -236,6 +236,23 @@ class Results:
         ax.imshow(plt.imread(known[name]))
         ax.set_axis_off()
         return ax
+
+    def view(
+        self, path: str | os.PathLike[str] | None = None, time: float | None = None, field: str | None = None, magnify: float = 1.0
+    ) -> Any:
+        """An interactive view of a frame, which turns and zooms in a notebook or in any browser; a figure of plotly.
+
+        - `path`: page to write (`"view.html"`), which needs no network and no other file
+        - `time` [s]: as of `fields`; the last frame by default
+        - `field`: array that colours it, vectors by their size; damage, temperature, broken bonds or displacement by default
+        - `magnify`: factor on displacements
+
+        `KeyError` names the nearest array where there is none of a name.
+        """
+        figure = view.figure(self.fields(time), field, magnify)
+        if path is not None:
+            figure.write_html(path, include_plotlyjs=True)
+        return figure
 
     def plot(self, *names: str, x: str = "time", ax: Any = None) -> Any:
         """Plots columns of the history over another one with matplotlib; its axes.

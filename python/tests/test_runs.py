@@ -104,6 +104,29 @@ def test_pictures_are_shown_by_name(breaking, tmp_path):
         results.show("stresses")
 
 
+def test_a_view_is_one_page_with_the_outside_of_the_solid(breaking, tmp_path):
+    pytest.importorskip("plotly")
+    results = fractum.run(breaking, output=tmp_path / "run")
+    magnify = 50.0
+    figure = results.view(tmp_path / "view.html", magnify=magnify)
+    solid = results.fields()["solid"]
+    drawn = next(part for part in figure.data if part.name == "solid")
+    places = np.transpose([drawn.x, drawn.y, drawn.z])
+    assert np.allclose(places, solid.points + magnify * solid.point_data["displacement"], rtol=0, atol=1e-12)
+    # The outside is closed, and encloses what the elements fill.
+    a, b, c = (places[np.array(corner)] for corner in (drawn.i, drawn.j, drawn.k))
+    tetrahedra = places[solid.cells[0][1]]
+    edges = tetrahedra[:, 1:] - tetrahedra[:, :1]
+    filled = np.abs(np.linalg.det(edges)).sum() / 6
+    assert np.allclose(np.cross(b - a, c - a).sum(axis=0), 0, atol=1e-12 * np.ptp(places) ** 2)
+    assert np.einsum("ij,ij->", a, np.cross(b, c)) / 6 == pytest.approx(filled, rel=1e-9)
+    assert len(drawn.intensity) == len(drawn.i) and max(drawn.intensity) <= 1
+    page = (tmp_path / "view.html").read_text(encoding="utf-8")
+    assert "Plotly.newPlot" in page and 'src="http' not in page
+    with pytest.raises(KeyError, match="damage"):
+        results.view(field="damge")
+
+
 def test_values_are_written_as_a_case_file_has_them():
     values = {"a": 0.5, "b": "2 mm/s", "c": ["1 mm", 2], "d": {"x": "1 m"}, "e": True, "f": np.float64(0.25)}
     written = dict(runs.overrides(values))
