@@ -164,7 +164,7 @@ pub enum StepError {
     },
     /// No equilibrium was found however small the step.
     #[error(
-        "step {step}, t = {time:.6e} s: no equilibrium found; {softer}the solid may have no static answer here - use control = \"path\" if the run does not follow it yet, let it move to the \
+        "step {step}, t = {time:.6e} s: no equilibrium found; {softer}the solid may have no static answer here - {path}let it move to the \
          next one with no_equilibrium = \"motion\", or end the run before with solver.stop_when"
     )]
     NoEquilibrium {
@@ -174,6 +174,8 @@ pub enum StepError {
         time: f64,
         /// What stiff faces that rub may need, with what parts it from the rest; else empty.
         softer: &'static str,
+        /// That the run may follow its path, with what parts it from the rest; empty where it does, or cannot.
+        path: &'static str,
     },
     /// The equilibrium of a bonded body was not found.
     #[error(

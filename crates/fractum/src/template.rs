@@ -42,18 +42,22 @@ macro_rules! template {
         }
     };
     ($name:literal, $what:literal, $mesh:path) => {
+        template!($name, $what, $mesh, as $name)
+    };
+    // The shape of another template.
+    ($name:literal, $what:literal, $mesh:path, as $shape:literal) => {
         Template {
             name: $name,
             what: $what,
             case: include_str!(concat!("../templates/", $name, "/case.toml")),
             mesh: Some($mesh),
-            geometry: include_str!(concat!("../templates/", $name, "/part.geo")),
+            geometry: include_str!(concat!("../templates/", $shape, "/part.geo")),
             study: "",
         }
     };
 }
 
-const TEMPLATES: [Template; 16] = [
+const TEMPLATES: [Template; 17] = [
     template!("plate", "plate with two holes pulled apart at rest; triangles", meshes::plate),
     template!("bracket", "L-shaped bracket bent at rest until it cracks; tetrahedra", meshes::bracket),
     template!("brazilian", "disc of rock split between platens at rest; triangles", meshes::brazilian),
@@ -79,6 +83,7 @@ const TEMPLATES: [Template; 16] = [
         meshes::split_bar
     ),
     template!("blast", "pressure pulse in a blast hole below a free face; triangles in motion", meshes::blast),
+    template!("bench", "blast hole below a free face in jointed rock; triangles in motion, interfaces", meshes::blast, as "blast"),
     template!("tunnel", "blast hole beside a tunnel in stressed rock; triangles in motion", meshes::tunnel),
     template!("hopper", "loose grains that flow out of a hopper; particles, walls of facets", meshes::hopper),
     template!("study", "brittle bar with random flaws, pulled apart with twelve seeds; a study", meshes::study, study),

@@ -81,6 +81,23 @@ opening = { group = "x+", against = "x-", along = "x", step = "2 um", end = "0.2
     assert!((peaks[0] / peaks[1] - 1.0).abs() < 0.05, "{peaks:?}");
 }
 
+/// Beyond the strength under a force: only what may follow its path is led there.
+#[test]
+fn no_equilibrium_leads_to_the_path_where_there_is_one_to_follow() {
+    let (before, after) = (BAR.find("[[supports]]\ngroup = \"x+\"").unwrap(), BAR.find("[solver]").unwrap());
+    let end = BAR.find("stop_when").unwrap();
+    let load = "[[loads]]\ngroup = \"x+\"\npressure = \"-2 MPa*t/1 s\"\n";
+    let pulled = format!("{}{load}{}", &BAR[..before], &BAR[after..end]);
+    let warm = "[materials.concrete.thermal]\nconductivity = \"3 W/(m K)\"\nheat_capacity = \"800 J/(kg K)\"\nexpansion = \"1e-5 1/K\"\n";
+    let heated = pulled.replace("[[bodies]]", &format!("{warm}[heat]\ninitial_temperature = \"293 K\"\n[[bodies]]"));
+    let by_time = pulled.replace("kind = \"static\"", "kind = \"static\"\ncontrol = \"time\"");
+    for (case, leads) in [(by_time, true), (pulled, false), (heated, false)] {
+        let ended = Workplace::new(&case).fractum(&["run", "case.toml", "--quiet"]);
+        assert!(ended.code != Some(0) && ended.stderr.contains("no equilibrium found"), "{}", ended.stderr);
+        assert_eq!(ended.stderr.contains("control = \"path\""), leads, "{}", ended.stderr);
+    }
+}
+
 #[test]
 fn check_compares_motion_and_equilibrium() {
     let place = Workplace::new(BAR);

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::common::{Workplace, summary};
 
-const NAMES: [&str; 16] = [
+const NAMES: [&str; 17] = [
     "plate",
     "bracket",
     "brazilian",
@@ -22,6 +22,7 @@ const NAMES: [&str; 16] = [
     "tile",
     "split-bar",
     "blast",
+    "bench",
     "tunnel",
     "hopper",
     "study",
@@ -164,6 +165,16 @@ fn the_wall_of_the_tunnel_bears_the_stress_of_kirsch_until_the_wave_comes() {
     let half = time[velocity.iter().position(|v| *v > 0.5 * peak).unwrap()];
     assert!((0.0..0.05e-3).contains(&(half - wave)), "{half} s, {wave} s");
     assert!((0.5..1.5).contains(&peak), "{peak} m/s");
+}
+
+#[test]
+fn joints_of_the_bench_slide_and_cracks_join_them() {
+    let ran = Ran::new("bench", &["solver.end=0.6 ms"]).silent();
+    // The hole alone has cracks of some tenths of a metre by then; open joints cost nothing but friction.
+    let (cracks, energy) = (ran.probe("cracks", "final"), &ran.summary["energy"]);
+    assert!((0.5..2.0).contains(&cracks), "{cracks} m");
+    assert!(energy["friction"].as_f64().unwrap() > 100.0, "{energy}");
+    assert!(energy["interface_fracture"].as_f64().unwrap().abs() < 1e-9, "{energy}");
 }
 
 #[test]

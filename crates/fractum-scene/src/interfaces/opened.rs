@@ -47,7 +47,7 @@ impl Interfaces {
                 joined.push([*first.entry(at).or_insert(place), place]);
             }
         }
-        let root = connected(opened.len(), joined.into_iter());
+        let root = connected(opened.len(), joined);
         let mut cracks: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (root, face) in root.into_iter().zip(opened) {
             cracks.entry(root).or_default().push(face);

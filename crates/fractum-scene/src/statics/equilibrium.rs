@@ -111,13 +111,17 @@ pub(super) fn accept_equilibrium(
 }
 
 /// The error of a step without equilibrium.
-pub(super) fn no_equilibrium(scene: &Scene) -> StepError {
+///
+/// - `follows`: whether the run follows its path already
+pub(super) fn no_equilibrium(scene: &Scene, follows: bool) -> StepError {
     let softer = if scene.interfaces().rub() {
         "interfaces that were never joined may slide by turns where they are very stiff: give them a normal_stiffness of a tenth of that in the plan or less; or "
     } else {
         ""
     };
-    StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer }
+    // Temperatures and liquid belong to times.
+    let path = if follows || scene.heat().is_some() { "" } else { "follow it with control = \"path\", " };
+    StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer, path }
 }
 
 /// Fails where anchors alone hold what is loaded.

@@ -381,7 +381,7 @@ impl StaticSolver {
                     continue;
                 }
                 warm_to(scene, scene.clock.time)?;
-                return Err(loose.unwrap_or_else(|| no_equilibrium(scene)));
+                return Err(loose.unwrap_or_else(|| no_equilibrium(scene, by_path)));
             }
             monotone = smallest;
             self.pace.growth = (0.5 * self.pace.growth).max(GROWTH[1]);

@@ -82,7 +82,7 @@ impl StaticSolver {
                 return self.accept_wet(scene, &field, state, present + dt);
             }
             if begins || self.pace.part <= SMALLEST_PART {
-                return Err(no_equilibrium(scene));
+                return Err(no_equilibrium(scene, true));
             }
             self.pace.part *= 0.5;
         }
