@@ -55,7 +55,7 @@ def figure(parts: Parts, field: str | None, magnify: float) -> Any:
         coloraxis={"colorscale": "Inferno", "colorbar": {"title": title}},
         legend={"x": 0.0},
         margin={"l": 0, "r": 0, "b": 0, "t": 40},
-        title=f"t = {parts.time:.6g}",
+        title=f"frame at {parts.time:.6g}",
     )
     if ends and np.ptp(ends, axis=0)[2] == 0.0:
         result.update_scenes(camera={"eye": {"x": 0, "y": 0, "z": 2}, "up": {"x": 0, "y": 1, "z": 0}})
