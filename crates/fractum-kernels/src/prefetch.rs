@@ -1,7 +1,8 @@
 /// Asks the processor for an item of a list before a loop comes to it: a hint without effect on results, and without any at all past the end
 /// of the list and on processors other than x86-64.
 ///
-/// It pays where a loop computes long on each item, since processors then do not look ahead as far as the next ones.
+/// It pays where a loop computes long on each item and the processor does not look ahead as far as the next ones: in the one over bonds, where it
+/// halves the time of large bodies, and not in those over cells of solids (0 to 4 %).
 #[inline(always)]
 pub fn prefetch<T>(items: &[T], index: usize) {
     #[cfg(target_arch = "x86_64")]

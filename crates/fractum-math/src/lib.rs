@@ -20,7 +20,7 @@ mod rotation;
 mod sphere;
 
 pub use fractum_kernels::{
-    FOUR, HalfSteps, Lane, Mat3, Rotation, Sym3, Vec3, Work, by_component, elementary, negative_parts, prefetch, widest,
+    FOUR, HalfSteps, Lane, Mat3, Rotation, Sym3, Vec3, Work, by_component, elementary, negative_parts, widest,
 };
 
 pub use connected::{Connected, connected, numbered_parts};

@@ -47,12 +47,9 @@ macro_rules! template {
     // The shape of another template.
     ($name:literal, $what:literal, $mesh:path, as $shape:literal) => {
         Template {
-            name: $name,
-            what: $what,
-            case: include_str!(concat!("../templates/", $name, "/case.toml")),
             mesh: Some($mesh),
             geometry: include_str!(concat!("../templates/", $shape, "/part.geo")),
-            study: "",
+            ..template!($name, $what, case alone)
         }
     };
 }

@@ -170,9 +170,9 @@ fn the_wall_of_the_tunnel_bears_the_stress_of_kirsch_until_the_wave_comes() {
 #[test]
 fn joints_of_the_bench_slide_and_cracks_join_them() {
     let ran = Ran::new("bench", &["solver.end=0.6 ms"]).silent();
-    // The hole alone has cracks of some tenths of a metre by then; open joints cost nothing but friction.
+    // The same hole in whole rock has 0.62 m of cracks by then; joints that were never joined cost nothing but friction.
     let (cracks, energy) = (ran.probe("cracks", "final"), &ran.summary["energy"]);
-    assert!((0.5..2.0).contains(&cracks), "{cracks} m");
+    assert!((0.8..2.0).contains(&cracks), "{cracks} m");
     assert!(energy["friction"].as_f64().unwrap() > 100.0, "{energy}");
     assert!(energy["interface_fracture"].as_f64().unwrap().abs() < 1e-9, "{energy}");
 }

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use fractum_kernels::bond::{BondEnergy, BondLanes, BondLaw, ForceLanes};
 use fractum_kernels::lanes::{Lanes, Vector, WIDTH, dot, side_by_side};
-use fractum_math::{Rotation, Vec3, prefetch, widest};
+use fractum_kernels::prefetch;
+use fractum_math::{Rotation, Vec3, widest};
 
 use super::images::BlockThroughBox;
 use super::loads::{LoadLanes, load_sizes};
@@ -274,6 +275,7 @@ impl<L: BondLaw> Block<L> {
 }
 
 impl<L: BondLaw> Block<L> {
+    /// - `DEVIATING`: whether there is a field; a loop for each, since one that chooses keeps its lanes in memory, at twice the time
     #[inline(always)]
     fn sum_energies<const DEVIATING: bool>(
         &self,
