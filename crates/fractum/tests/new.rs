@@ -48,7 +48,7 @@ fn every_template_is_listed_and_passes_check_without_a_doubt() {
     assert!(place.fractum(&["new", "plat"]).stderr.contains("did you mean plate? templates: plate, bracket"));
 }
 
-/// A template that was run.
+/// A template that was run without a warning.
 struct Ran {
     place: Workplace,
     summary: Value,
@@ -67,13 +67,8 @@ impl Ran {
         let summary = summary(&place, "out");
         assert_eq!(summary["status"], "completed");
         assert!(summary["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", summary["energy"]);
+        assert_eq!(summary["warnings"].as_array().map(Vec::len), Some(0), "{name}: {}", summary["warnings"]);
         Ran { place, summary }
-    }
-
-    /// No warnings while it ran either.
-    fn silent(self) -> Self {
-        assert_eq!(self.summary["warnings"].as_array().map(Vec::len), Some(0), "{}", self.summary["warnings"]);
-        self
     }
 
     /// `max`, `min` or `final` of a probe.
@@ -103,15 +98,32 @@ fn templates_run_to_their_cracks() {
     assert!((1.0..2.0).contains(&(load / ligament)), "{load} N of {ligament} N");
     let strength = largest("bonded-ucs", "strength");
     assert!((90e6..110e6).contains(&strength), "{strength} Pa");
-    assert!(largest("impact", "push") > 1e4);
     // Between the residual strength, tan 30 deg, and cohesion with friction, 0.5 + tan 35 deg.
     let ratio = largest("shear", "stress_ratio");
     assert!((1.1..1.201).contains(&ratio), "{ratio}");
 }
 
 #[test]
+fn the_push_on_the_ball_is_its_change_of_momentum() {
+    let ran = Ran::new("impact", &[]);
+    let [time, push, velocity] = ["time", "push", "ball_velocity"].map(|column| ran.column(column));
+    let rows = 1..time.len();
+    let impulse: f64 = rows.map(|row| (time[row] - time[row - 1]) * (push[row] + push[row - 1]) / 2.0).sum();
+    let change = 0.26 * (velocity[time.len() - 1] - velocity[0]);
+    assert!((impulse / change - 1.0).abs() < 0.02, "{impulse} N s, {change} N s");
+    assert!(velocity[time.len() - 1].abs() < 1.0, "the slab has stopped it: {} m/s", velocity[time.len() - 1]);
+}
+
+#[test]
+#[ignore = "a minute: .ci/nightly heavy"]
+fn the_disc_splits_at_its_strength() {
+    let strength = largest("brazilian", "splitting_strength");
+    assert!((strength / 8e6 - 1.0).abs() < 0.05, "{strength} Pa");
+}
+
+#[test]
 fn the_split_bar_has_the_waves_of_a_bar_and_the_strength_of_its_rock() {
-    let ran = Ran::new("split-bar", &[]).silent();
+    let ran = Ran::new("split-bar", &[]);
     let [time, wave] = ["time", "wave_1"].map(|column| ran.column(column));
     // Half of the pulse passes the gauge 250 mm away as late as waves in a bar, and it is a plateau of the pressure.
     let arrival = time[wave.iter().position(|stress| *stress > 80e6).unwrap()];
@@ -129,7 +141,7 @@ fn the_split_bar_has_the_waves_of_a_bar_and_the_strength_of_its_rock() {
 
 #[test]
 fn cracks_of_the_beam_with_grains_take_more_than_its_bond_and_less_than_its_mortar() {
-    let ran = Ran::new("aggregate", &[]).silent();
+    let ran = Ran::new("aggregate", &[]);
     let energy = |name: &str| ran.summary["energy"][name].as_f64().unwrap();
     // Over the ligament of 35 x 50 mm, when 30 % of the peak is left.
     let taken = (energy("damage") + energy("interface_fracture")) / (0.035 * 0.05);
@@ -139,7 +151,7 @@ fn cracks_of_the_beam_with_grains_take_more_than_its_bond_and_less_than_its_mort
 
 #[test]
 fn the_tile_has_the_stiffness_of_a_plate() {
-    let ran = Ran::new("tile", &["solver.end=5 ms"]).silent();
+    let ran = Ran::new("tile", &["solver.end=5 ms"]);
     // Navier's plate on four edges under a force in the middle; shear and a stamp of 36 mm leave a part of it.
     let (young, nu, height, width) = (25e9, 0.2, 0.03_f64, 0.2);
     let plate = young * height.powi(3) / (12.0 * (1.0 - nu * nu)) / (0.0116 * width * width);
@@ -149,7 +161,7 @@ fn the_tile_has_the_stiffness_of_a_plate() {
 
 #[test]
 fn the_wall_of_the_tunnel_bears_the_stress_of_kirsch_until_the_wave_comes() {
-    let ran = Ran::new("tunnel", &["solver.end=0.9 ms"]).silent();
+    let ran = Ran::new("tunnel", &["solver.end=0.9 ms"]);
     // Hoop stress at the side of a circular hole, mean over the elements of a ring of 0.15 m.
     let (across, along, radius) = (-4e6, -6.5e6, 2.0);
     let hoop = |r: f64| {
@@ -169,7 +181,7 @@ fn the_wall_of_the_tunnel_bears_the_stress_of_kirsch_until_the_wave_comes() {
 
 #[test]
 fn joints_of_the_bench_slide_and_cracks_join_them() {
-    let ran = Ran::new("bench", &["solver.end=0.6 ms"]).silent();
+    let ran = Ran::new("bench", &["solver.end=0.6 ms"]);
     // The same hole in whole rock has 0.62 m of cracks by then; joints that were never joined cost nothing but friction.
     let (cracks, energy) = (ran.probe("cracks", "final"), &ran.summary["energy"]);
     assert!((0.8..2.0).contains(&cracks), "{cracks} m");
