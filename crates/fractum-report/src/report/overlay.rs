@@ -23,10 +23,8 @@ pub(super) fn to_svg(scale: &Scale, [width, height]: [usize; 2]) -> String {
     if let Some(length) = round_below(LONGEST * w / scale.pixels_per_metre) {
         let (y, end) = (h - 16.0, 16.0 + length * scale.pixels_per_metre);
         svg += &format!(
-            "<path d=\"M16 {:.1}v8M16 {y:.1}H{end:.1}M{end:.1} {:.1}v8\" fill=\"none\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" {label}>{}</text>",
-            y - 4.0,
-            y - 4.0,
+            "{}<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" {label}>{}</text>",
+            line(&format!("M16 {:.1}v8M16 {y:.1}H{end:.1}M{end:.1} {:.1}v8", y - 4.0, y - 4.0)),
             0.5 * (16.0 + end),
             y - 9.0,
             quantity(length, "m")
@@ -39,12 +37,18 @@ pub(super) fn to_svg(scale: &Scale, [width, height]: [usize; 2]) -> String {
         }
         let (dx, dy) = (AXIS * right, AXIS * down);
         svg += &format!(
-            "<path d=\"M{x:.1} {y:.1}l{dx:.1} {dy:.1}\"/><text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" {label}>{name}</text>",
+            "{}<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" {label}>{name}</text>",
+            line(&format!("M{x:.1} {y:.1}l{dx:.1} {dy:.1}")),
             x + 1.3 * dx,
             y + 1.3 * dy + 6.0
         );
     }
     svg + "</svg>"
+}
+
+/// A dark line with a light border, to be seen on what is dark and on what is light.
+fn line(path: &str) -> String {
+    format!("<path d=\"{path}\" fill=\"none\" stroke=\"#fff\" stroke-width=\"5\"/><path d=\"{path}\" fill=\"none\"/>")
 }
 
 /// The largest of 1, 2 and 5 times a power of ten that is not above a length; none of what has no size.
