@@ -13,10 +13,10 @@ CASE = """fractum = 1
 mesh = { file = "bar.msh" }
 bodies = [{ name = "bar", kind = "solid", group = "body", material = "concrete" }]
 supports = [
-    { group = "x-", velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.4 ms", "-0.05 m/s"]] } } },
-    { group = "x+", velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.4 ms", "0.05 m/s"]] } } },
+    { group = "x-", velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.1 ms", "-0.2 m/s"]] } } },
+    { group = "x+", velocity = { x = { ramp = [["0 s", "0 m/s"], ["0.1 ms", "0.2 m/s"]] } } },
 ]
-solver = { kind = "explicit", end = "4 ms" }
+solver = { kind = "explicit", end = "2 ms" }
 probes = [{ name = "load", reaction = { group = "x+", along = "x" } }]
 output = { history = { every = "5 us" }, fields = { every = "0.1 ms" } }
 [materials.concrete]

@@ -34,7 +34,7 @@ def resting(elastic):
     """The bar at rest, pulled by 0.1 mm."""
     pulled = '{ group = "x+", displacement = { x = "0.1 mm * t / 1 s" } }]'
     text = elastic.read_text().replace('fix = "xyz" }]', f'fix = "xyz" }}, {pulled}')
-    text = text.replace('kind = "explicit", end = "4 ms"', 'kind = "static", end = "1 s"')
+    text = text.replace('kind = "explicit", end = "2 ms"', 'kind = "static", end = "1 s"')
     elastic.write_text(text[: text.index("output")] + text[text.index("[materials") :])
     return elastic
 

@@ -165,6 +165,12 @@ impl Chart {
         }
     }
 
+    /// Dashes of a line by its number, where the colours begin anew.
+    fn dashes(&self, index: usize) -> &'static str {
+        let rounds = if self.series[index].colour.is_some() { 0 } else { index / COLOURS.len() };
+        ["", " stroke-dasharray=\"7 4\"", " stroke-dasharray=\"2 4\""][rounds.min(2)]
+    }
+
     /// Swatches and names in rows above the chart, and their height; nothing for a single series.
     fn legend(&self) -> (String, f64) {
         let mut svg = String::new();
@@ -190,8 +196,15 @@ impl Chart {
                 Style::Points => {
                     format!("<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"3.5\" fill=\"{colour}\"/>", x + 7.0, y - 4.0)
                 }
-                Style::Area => swatch(x, y, 9.0, 0.75, colour),
-                Style::Line | Style::Step | Style::Outline => swatch(x, y, 3.0, 1.0, colour),
+                Style::Area => format!(
+                    "<rect x=\"{x:.1}\" y=\"{:.1}\" width=\"14\" height=\"9\" fill=\"{colour}\" opacity=\"0.75\"/>",
+                    y - 8.5
+                ),
+                Style::Line | Style::Step | Style::Outline => format!(
+                    "<path d=\"M{x:.1} {:.1}h14\" stroke=\"{colour}\" stroke-width=\"3\"{}/>",
+                    y - 4.0,
+                    self.dashes(index)
+                ),
             };
             let _ = writeln!(svg, "{swatch}<text x=\"{:.1}\" y=\"{y:.1}\">{}</text>", x + 19.0, escape(name));
             x += width + 8.0;
@@ -284,7 +297,9 @@ impl Chart {
             Style::Outline => format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\" stroke-linejoin=\"round\""),
             Style::Line | Style::Step | Style::Points => {
                 format!(
-                    "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-linejoin=\"round\" stroke-linecap=\"round\""
+                    "fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.8\" stroke-linejoin=\"round\" \
+                     stroke-linecap=\"round\"{}",
+                    self.dashes(index)
                 )
             }
         };
@@ -331,14 +346,6 @@ impl Chart {
             );
         }
     }
-}
-
-/// A bar in the legend, beside a text at `y`.
-fn swatch(x: f64, y: f64, thickness: f64, opacity: f64, colour: &str) -> String {
-    let top = y - 4.0 - 0.5 * thickness;
-    format!(
-        "<rect x=\"{x:.1}\" y=\"{top:.1}\" width=\"14\" height=\"{thickness}\" fill=\"{colour}\" opacity=\"{opacity}\"/>"
-    )
 }
 
 #[cfg(test)]
