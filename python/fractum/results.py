@@ -251,7 +251,7 @@ class Results:
         """
         figure = view.figure(self.fields(time), field, magnify)
         if path is not None:
-            figure.write_html(path, include_plotlyjs=True)
+            figure.write_html(path, include_plotlyjs=True, default_height="95vh")
         return figure
 
     def plot(self, *names: str, x: str = "time", ax: Any = None) -> Any:

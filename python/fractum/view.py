@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 #: What colours a view by itself, the first of these that there is.
 _FIELDS = ("damage", "temperature", "broken_bonds", "strength_left", "displacement")
+#: The colours of damage in the pictures of a report.
+_DAMAGE = [[0.0, "#c9c8c2"], [0.5, "#e5946a"], [1.0, "#8f0f1c"]]
 #: Parts that cover others, or lie inside them.
 _HIDDEN = ("bonds", "contacts", "gas", "cracks")
 
@@ -50,15 +52,21 @@ def figure(parts: Parts, field: str | None, magnify: float) -> Any:
     result = plotly.Figure(drawn)
     unit = next((part.units[field] for part in shown.values() if field in part.units), "")
     title = f"{field} [{unit}]" if unit else field
+    damage = {"colorscale": _DAMAGE, "cmin": 0.0, "cmax": 1.0}
+    plain = {f"{axis}axis": {"showbackground": False} for axis in "xyz"}
     result.update_layout(
-        scene={"aspectmode": "data"},
-        coloraxis={"colorscale": "Inferno", "colorbar": {"title": title}},
+        scene={"aspectmode": "data", "camera": {"eye": {"x": 1.6, "y": -1.6, "z": 1.2}}, **plain},
+        coloraxis={**(damage if field == "damage" else {"colorscale": "Viridis"}), "colorbar": {"title": title}},
         legend={"x": 0.0},
         margin={"l": 0, "r": 0, "b": 0, "t": 40},
         title=f"frame at {parts.time:.6g}",
     )
-    if ends and np.ptp(ends, axis=0)[2] == 0.0:
-        result.update_scenes(camera={"eye": {"x": 0, "y": 0, "z": 2}, "up": {"x": 0, "y": 1, "z": 0}})
+    width, height, depth = np.ptp(ends, axis=0) if ends else np.ones(3)
+    if depth == 0.0:
+        above = {"eye": {"x": 0, "y": 0, "z": 1.5}, "up": {"x": 0, "y": 1, "z": 0}, "projection": {"type": "orthographic"}}
+        shape = {"x": 2 * width / max(width, height), "y": 2 * height / max(width, height), "z": 0.01}
+        result.update_scenes(camera=above, aspectmode="manual", aspectratio=shape, zaxis={"visible": False})
+        result.update_traces(lighting={"ambient": 1.0, "diffuse": 0.0}, selector={"type": "mesh3d"})
     return result
 
 
