@@ -21,6 +21,7 @@
 mod certificate;
 mod cloud;
 mod cooker;
+mod dense;
 mod domain;
 mod error;
 mod grading;
@@ -42,6 +43,7 @@ mod wall_areas;
 pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};
 pub use cooker::{PackProgress, PackSize, PackSpec, pack, pack_and_tell, pack_certified};
+pub use dense::dense;
 pub use domain::{Domain, DomainData};
 pub use error::PackError;
 pub use grading::Grading;
