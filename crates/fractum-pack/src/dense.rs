@@ -8,17 +8,22 @@ use crate::domain::Domain;
 use crate::neighbours::{Neighbours, spatial_order};
 use crate::period::Period;
 use crate::random::Random;
-use crate::relax::Assembly;
+use crate::relax::{Assembly, Relaxed};
 
-/// Shares by which the radii are enlarged while the spheres push each other apart, one after another: the larger, the faster and
-/// the more even, and the farther below jamming the cloud must be.
-const ENLARGED: [f64; 6] = [0.05, 0.02, 0.01, 5e-3, 2e-3, 1e-3];
+/// Shares by which the radii are enlarged while the spheres push each other apart, one after another, and the steps of each: the
+/// larger, the faster and the more even, and the farther below jamming the cloud must be.
+const ENLARGED: [(f64, usize); 6] =
+    [(0.05, 300), (0.02, 600), (0.01, 1000), (5e-3, 2000), (2e-3, 3000), (SMALLEST, STEPS)];
+/// The smallest of these shares.
+const SMALLEST: f64 = 1e-3;
+/// Steps with it.
+const STEPS: usize = 4000;
 /// Part of the enlargement that may be used up.
 const USED: f64 = 0.98;
 /// Net force over mean contact force at which spheres are jammed.
 const JAMMED: f64 = 0.02;
-/// Steps of a relaxation.
-const STEPS: usize = 3000;
+/// Search skin in mean radii: a random start is far from the end.
+const SKIN: f64 = 0.3;
 /// Share by which radii shrink at least while the largest fraction is looked for.
 const SHRUNK: f64 = 1e-3;
 /// Fraction above those of all random packings.
@@ -67,7 +72,7 @@ pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> R
     let order = spatial_order(&start);
     let sorted: Vec<f64> = order.iter().map(|&i| radii[i as usize]).collect();
     let mut cloud = Cloud::new(&walls, period, order.iter().map(|&i| start[i as usize]).collect(), sorted);
-    if ENLARGED.into_iter().any(|more| cloud.push_apart(more)) {
+    if ENLARGED.into_iter().any(|(enlarged, steps)| cloud.push_apart(enlarged, steps)) {
         let mut centres = start;
         for (&i, x) in order.iter().zip(&cloud.assembly.position) {
             centres[i as usize] = period.map_or(*x, |period| period.within(x));
@@ -91,24 +96,22 @@ impl<'a> Cloud<'a> {
         let smallest = radius.iter().copied().fold(f64::INFINITY, f64::min);
         let mut assembly = Assembly::new(walls, position, radius.clone());
         assembly.period = period;
+        assembly.skin = SKIN;
         // Contacts, and with them stiffness, grow with the surface.
         assembly.mobility = radius.iter().map(|r| (smallest / r).powi(2)).collect();
         Cloud { assembly, radius, scale: 1.0 }
     }
 
     /// Lets spheres that are enlarged by a share push each other apart; whether none of them touches another one or a wall then.
-    fn push_apart(&mut self, enlarged: f64) -> bool {
-        self.resize(enlarged);
-        self.assembly.relax(JAMMED, STEPS).is_free && self.is_free()
+    fn push_apart(&mut self, enlarged: f64, steps: usize) -> bool {
+        self.relax(enlarged, steps).is_free && self.is_free()
     }
 
     /// Scale at which the spheres find places where they do not touch.
     fn shrink(&mut self) -> f64 {
-        let enlarged = ENLARGED[ENLARGED.len() - 1];
         loop {
-            self.resize(enlarged);
-            let relaxed = self.assembly.relax(JAMMED, STEPS);
-            if relaxed.is_free {
+            let relaxed = self.relax(SMALLEST, STEPS);
+            if relaxed.is_free && self.is_free() {
                 return self.scale;
             }
             let overlap = relaxed.overlap / (2.0 * self.assembly.mean_radius());
@@ -116,18 +119,28 @@ impl<'a> Cloud<'a> {
         }
     }
 
-    fn resize(&mut self, enlarged: f64) {
+    fn relax(&mut self, enlarged: f64, steps: usize) -> Relaxed {
+        if let Domain::Surface(surface) = self.assembly.domain {
+            // Large spheres may squeeze a small one through a surface, which pushes what is near it only.
+            for (x, r) in self.assembly.position.iter_mut().zip(&self.radius) {
+                let (depth, inward) = surface.nearest(x);
+                if let Some(inward) = inward.filter(|_| depth < 0.0) {
+                    *x += inward * (r - depth);
+                }
+            }
+        }
         let factor = self.scale * (1.0 + enlarged);
-        let own = self.radius.iter().map(|r| r * factor).collect();
-        self.assembly.set_radii(own);
+        self.assembly.set_radii(self.radius.iter().map(|r| r * factor).collect());
         self.assembly.accepted = USED * enlarged / (1.0 + enlarged);
+        self.assembly.relax(JAMMED, steps)
     }
 
-    /// Whether no sphere, as large as it is asked for, touches another one or a wall.
+    /// Whether no sphere touches another one or a wall as large as it is meant to be.
     fn is_free(&self) -> bool {
         let Assembly { domain, position, period, .. } = &self.assembly;
-        let near = Neighbours::find(position, &self.radius, 1.0, 0.0, *period);
-        (0..position.len()).all(|i| near.of(i).is_empty() && domain.depth(&position[i]) >= self.radius[i])
+        let radius: Vec<f64> = self.radius.iter().map(|r| r * self.scale).collect();
+        let near = Neighbours::find(position, &radius, 1.0, 0.0, *period);
+        (0..position.len()).all(|i| near.of(i).is_empty() && domain.depth(&position[i]) >= radius[i])
     }
 }
 
@@ -201,6 +214,15 @@ mod tests {
         worst
     }
 
+    /// Solid fraction, that of the inner half, largest overlap, and time [s].
+    fn filled(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> Result<[f64; 4], PackError> {
+        let clock = Instant::now();
+        let centres = dense(domain, repeats, radii, seed)?;
+        let time = clock.elapsed().as_secs_f64();
+        let fraction = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
+        Ok([fraction, inner(domain, &centres, radii), overlap(domain, repeats, &centres, radii), time])
+    }
+
     #[test]
     fn no_two_touch_in_any_shape_of_any_sizes() {
         let (points, triangles) = cube(1.0);
@@ -211,39 +233,80 @@ mod tests {
             ("sphere", Domain::sphere(0.6), WALLS),
             ("surface", Domain::Surface(ClosedSurface::new(&points, &triangles).unwrap()), WALLS),
             ("periodic", Domain::Box { lower, upper }, [true; 3]),
-            ("x, y periodic", Domain::Box { lower, upper }, [true, true, false]),
+            ("periodic x, y", Domain::Box { lower, upper }, [true, true, false]),
         ];
-        let curve = Grading::sieves(vec![[0.02, 0.0], [0.04, 0.3], [0.08, 0.7], [0.16, 1.0]]);
+        let curve = Grading::sieves(vec![[0.04, 0.0], [0.06, 0.3], [0.12, 0.7], [0.2, 1.0]]);
         let sizes = [
-            ("one", one(16.0), [0.57, 0.6]),
-            ("1:3", Grading::uniform(0.04, 0.12), [0.57, 0.61]),
-            ("1:8", curve, [0.62, 0.66]),
+            ("one", one(12.0), [0.55, 0.6], 3),
+            ("1 to 3", Grading::uniform(0.05, 0.15), [0.55, 0.61], 2),
+            ("curve 1 to 5", curve, [0.57, 0.63], 1),
         ];
         println!("| shape | sizes | particles | fraction | inner half | overlap | s |");
         for (shape, domain, repeats) in &shapes {
-            for (name, grading, [walled, free]) in &sizes {
-                let share = if *repeats == [true; 3] { *free } else { *walled };
-                let radii = radii(grading, share, domain);
-                for seed in 1..3 {
-                    let clock = Instant::now();
-                    let centres = match dense(domain, *repeats, &radii, seed) {
-                        Ok(centres) => centres,
-                        Err(error) => {
-                            println!("| {shape} | {name} | {} {error} {:?}", radii.len(), clock.elapsed());
-                            continue;
-                        }
-                    };
-                    let time = clock.elapsed().as_secs_f64();
-                    let reached = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
-                    let (inner, overlap) =
-                        (inner(domain, &centres, &radii), overlap(domain, *repeats, &centres, &radii));
-                    println!(
-                        "| {shape} | {name} | {} | {reached:.4} | {inner:.4} | {overlap:.1e} | {time:.2} |",
-                        radii.len()
-                    );
-                    assert!(overlap < 0.0, "{overlap}");
+            for (name, grading, [walled, free], seeds) in &sizes {
+                let free_of_walls = *repeats == [true; 3];
+                let asked = if free_of_walls { *free } else { *walled };
+                let radii = radii(grading, asked, domain);
+                for seed in 1..=*seeds {
+                    let [fraction, inner, overlap, time] = filled(domain, *repeats, &radii, seed).unwrap();
+                    let count = radii.len();
+                    println!("| {shape} | {name} | {count} | {fraction:.4} | {inner:.4} | {overlap:.0e} | {time:.2} |");
+                    assert!(overlap < 0.0, "{shape} {name} {seed}: {overlap}");
+                    let largest = sphere_volume(radii[0]) / domain.volume();
+                    assert!((fraction - asked).abs() < largest, "{shape} {name}: {fraction}");
+                    let most = if free_of_walls { 0.02 } else { 0.1 };
+                    assert!((inner / fraction - 1.0).abs() < most, "{shape} {name} {seed}: {inner} of {fraction}");
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_seed_gives_the_same_bits_for_any_number_of_threads() {
+        let domain = Domain::cuboid(1.0, 1.0, 1.0);
+        let radii = radii(&Grading::uniform(0.05, 0.1), 0.57, &domain);
+        let run = |threads, seed| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| dense(&domain, [true; 3], &radii, seed).unwrap())
+        };
+        let first = run(1, 1);
+        assert_eq!(first, run(2, 1));
+        assert_eq!(first, run(7, 1));
+        assert_ne!(first, run(7, 2));
+    }
+
+    #[test]
+    fn the_largest_fraction_is_told_and_walls_lower_it() {
+        println!("| space | diameters across | largest fraction |");
+        let of = |name: &str, grading: &Grading, across: f64, repeats: [bool; 3]| {
+            let domain = Domain::cuboid(1.0, 1.0, 1.0);
+            let radii = radii(grading, 0.68, &domain);
+            let seeds = if across > 10.0 { 1 } else { 3 };
+            let all: Vec<f64> = (1..=seeds)
+                .map(|seed| match dense(&domain, repeats, &radii, seed) {
+                    Err(PackError::Dense { reached, .. }) => reached,
+                    other => panic!("{other:?}"),
+                })
+                .collect();
+            println!("| {name} | {across} | {all:.3?} |");
+            all.iter().sum::<f64>() / all.len() as f64
+        };
+        let free = [8.0, 16.0].map(|across| of("periodic", &one(across), across, [true; 3]));
+        let walled = [5.0, 10.0, 20.0].map(|across| of("box", &one(across), across, WALLS));
+        // Random close packing of one size is 0.64.
+        assert!(free.iter().all(|own| (0.615..0.65).contains(own)), "{free:?}");
+        assert!(walled[0] < walled[1] && walled[1] < walled[2] && walled[2] < free[1], "{walled:?}");
+        // What is told can be had.
+        let domain = Domain::cuboid(1.0, 1.0, 1.0);
+        let fewer = radii(&one(10.0), 0.985 * walled[1], &domain);
+        assert!(filled(&domain, WALLS, &fewer, 3).unwrap()[2] < 0.0);
+    }
+
+    #[test]
+    fn what_cannot_be_is_told() {
+        let domain = Domain::cuboid(1.0, 1.0, 1.0);
+        assert_eq!(dense(&domain, WALLS, &[0.55], 1), Err(PackError::NoRoom { radius: 0.55 }));
+        assert!(matches!(dense(&domain, WALLS, &[0.1; 300], 1), Err(PackError::TooDense(share)) if share > 1.2));
+        assert!(matches!(dense(&Domain::cuboid(1.0, 1.0, 0.0), WALLS, &[0.1], 1), Err(PackError::BadDimension { .. })));
     }
 }

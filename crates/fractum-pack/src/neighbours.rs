@@ -185,7 +185,7 @@ mod tests {
             points in prop::collection::vec(prop::array::uniform3(-2.0f64..3.0), 1..120), gap in 0.0f64..0.4,
         ) {
             let position: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
-            let radius: Vec<f64> = (0..position.len()).map(|i| 0.1 + 0.02 * (i % 7) as f64).collect();
+            let radius: Vec<f64> = (0..position.len()).map(|i| 0.02 * 1.5f64.powi((i % 7) as i32)).collect();
             let found = Neighbours::find(&position, &radius, 1.1, gap, None);
             for i in 0..position.len() {
                 let all: Vec<u32> = (0..position.len())

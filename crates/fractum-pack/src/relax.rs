@@ -18,6 +18,8 @@ pub(crate) struct Assembly<'a> {
     pub(crate) period: Option<Period>,
     /// Overlap over the sum of the radii, of a wall over the radius, up to which spheres are no nearer than they may be.
     pub(crate) accepted: f64,
+    /// Search skin in mean radii.
+    pub(crate) skin: f64,
     /// Inverse of the mass of each.
     pub(crate) mobility: Vec<f64>,
     velocity: Vec<Vec3>,
@@ -34,7 +36,8 @@ pub(crate) struct Assembly<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     power: f64,
-    force: f64,
+    unbalanced: f64,
+    acceleration: f64,
     velocity: f64,
     overlap: f64,
     contacts: f64,
@@ -57,7 +60,7 @@ const DT_START: f64 = 0.1;
 const DT_MAX: f64 = 0.4;
 const ALPHA_START: f64 = 0.1;
 const PATIENCE: usize = 5;
-/// Search skin in mean radii.
+/// Search skin in mean radii, where nothing else is said.
 const SKIN: f64 = 0.15;
 
 impl<'a> Assembly<'a> {
@@ -70,6 +73,7 @@ impl<'a> Assembly<'a> {
             wall_stiffness: 1.0,
             period: domain.period(),
             accepted: 0.0,
+            skin: SKIN,
             mobility: vec![1.0; n],
             velocity: vec![Vec3::zeros(); n],
             force: vec![Vec3::zeros(); n],
@@ -99,7 +103,7 @@ impl<'a> Assembly<'a> {
     }
 
     fn search(&mut self) {
-        let skin = SKIN * self.mean_radius();
+        let skin = self.skin * self.mean_radius();
         let period = self.period;
         if let Some(period) = period {
             self.position.iter_mut().for_each(|x| *x = period.within(x));
@@ -130,7 +134,7 @@ impl<'a> Assembly<'a> {
     pub(crate) fn relax(&mut self, tolerance: f64, limit: usize) -> Relaxed {
         let n = self.position.len();
         let mean_radius = self.mean_radius();
-        let skin = SKIN * mean_radius;
+        let skin = self.skin * mean_radius;
         self.velocity.fill(Vec3::zeros());
         let (mut dt, mut alpha, mut uphill_free) = (DT_START, ALPHA_START, 0usize);
         for iteration in 0..limit {
@@ -139,7 +143,7 @@ impl<'a> Assembly<'a> {
             }
             let sums = self.forces();
             let overlap = sums.overlap / sums.contacts.max(1.0);
-            let unbalanced = (sums.force / n as f64).sqrt();
+            let unbalanced = (sums.unbalanced / n as f64).sqrt();
             let is_free = sums.too_near == 0.0;
             if is_free || unbalanced < (tolerance * overlap).max(1e-8 * mean_radius) {
                 return Relaxed { iterations: iteration, overlap, is_free };
@@ -157,7 +161,7 @@ impl<'a> Assembly<'a> {
                 alpha = ALPHA_START;
                 stop = true;
             }
-            let steer = if sums.force > 0.0 { alpha * (sums.velocity / sums.force).sqrt() } else { 0.0 };
+            let steer = if sums.acceleration > 0.0 { alpha * (sums.velocity / sums.acceleration).sqrt() } else { 0.0 };
             let keep = if stop { 0.0 } else { 1.0 - alpha };
             let steer = if stop { 0.0 } else { steer };
             // No sphere travels further than a fraction of its radius in one step, however deep the first overlaps are.
@@ -249,8 +253,9 @@ impl<'a> Assembly<'a> {
                         sums.too_near += f64::from(u8::from(c.overlap > accepted * r));
                     });
                     sums.power += f.dot(&velocity[i]);
+                    sums.unbalanced += f.norm_squared();
                     f *= mobility[i];
-                    sums.force += f.norm_squared();
+                    sums.acceleration += f.norm_squared();
                     sums.velocity += velocity[i].norm_squared();
                     *total = f;
                 }
@@ -259,7 +264,8 @@ impl<'a> Assembly<'a> {
             .collect();
         partial.into_iter().fold(Sums::default(), |a, b| Sums {
             power: a.power + b.power,
-            force: a.force + b.force,
+            unbalanced: a.unbalanced + b.unbalanced,
+            acceleration: a.acceleration + b.acceleration,
             velocity: a.velocity + b.velocity,
             overlap: a.overlap + b.overlap,
             contacts: a.contacts + b.contacts,
