@@ -13,7 +13,8 @@ use fractum_scene::ContactParameters;
 
 use crate::build::PreparedFacets;
 use crate::model::{
-    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, Periodic, RigidShape, SolverKind,
+    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, Periodic, RigidShape,
+    SolverKind,
 };
 use crate::{Diagnostic, Diagnostics, Place, Spanned};
 
@@ -61,7 +62,7 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache, tell: &dyn Fn(&st
                     Err(fault) => errors.push(of_bonded(case, &body.name, bonded, &fault)),
                 }
             }
-            BodyKind::Particles(loose) => match prepare_loose(&loose_request(case, loose), mesh) {
+            BodyKind::Particles(loose) => match prepare_loose(&loose_request(case, loose), mesh, tell) {
                 Ok(made) => {
                     all.reads.extend(made.read.map(|told| (body.name.value.clone(), told)));
                     all.prepared.push(made.body);

@@ -43,10 +43,6 @@ const DRAWS: usize = 100_000;
 /// that was reached with these sizes; [`PackError::TooDense`] where none comes near.
 pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> Result<Vec<Vec3>, PackError> {
     domain.check()?;
-    let asked = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
-    if asked > MOST {
-        return Err(PackError::TooDense(asked));
-    }
     let (lower, upper) = domain.bounds();
     // What does not repeat is as a period without end, and a wall that is not there infinitely far.
     let period = repeats.contains(&true).then(|| {
@@ -69,6 +65,10 @@ pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> R
     };
     let start = radii.iter().map(|&radius| place(radius).ok_or(PackError::NoRoom { radius }));
     let start = start.collect::<Result<Vec<Vec3>, PackError>>()?;
+    let asked = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
+    if asked > MOST {
+        return Err(PackError::TooDense(asked));
+    }
     let order = spatial_order(&start);
     let sorted: Vec<f64> = order.iter().map(|&i| radii[i as usize]).collect();
     let mut cloud = Cloud::new(&walls, period, order.iter().map(|&i| start[i as usize]).collect(), sorted);

@@ -25,9 +25,11 @@ pub struct MadeParticles {
 
 /// Makes loose particles ready.
 ///
+/// - `tell`: called with what is being done, where it takes long
+///
 /// # Errors
 /// A file that holds no spheres; a region without room.
-pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh) -> Result<MadeParticles, Fault> {
+pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh, tell: &dyn Fn(&str)) -> Result<MadeParticles, Fault> {
     let (mut file, mut arrivals) = (None, None);
     let (position, radius, at) = match asked.source {
         LooseFill::File(of) => {
@@ -43,7 +45,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh) -> Result<MadePartic
                     let (half, mean) = (0.5 * dispersion, 2.0 * radius);
                     let grading = Grading::uniform(mean * (1.0 - half), mean * (1.0 + half));
                     let shape = domain(Filled::Region(region), mesh)?;
-                    (centres, radii) = fill_graded(shape, asked.repeats, &grading, Amount::Count(count), seed)?;
+                    (centres, radii) = fill_graded(shape, asked.repeats, &grading, Amount::Count(count), seed, tell)?;
                 }
                 None if centres.is_empty() => {
                     let fault = Fault::new(At::Shape, "no particle of that radius has room in the region");
@@ -54,7 +56,7 @@ pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh) -> Result<MadePartic
             (centres, radii, At::Shape)
         }
         LooseFill::Graded { filled, grading, amount, seed } => {
-            let (centres, radii) = fill_graded(domain(filled, mesh)?, asked.repeats, grading, amount, seed)?;
+            let (centres, radii) = fill_graded(domain(filled, mesh)?, asked.repeats, grading, amount, seed, tell)?;
             (centres, radii, At::Shape)
         }
         LooseFill::Stream(stream) => {
@@ -137,6 +139,7 @@ fn fill_graded(
     grading: &Grading,
     amount: Amount,
     seed: u64,
+    tell: &dyn Fn(&str),
 ) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
     let count = graded_count(domain.volume(), grading, amount);
     if count > MOST {
@@ -156,6 +159,7 @@ fn fill_graded(
             return Ok((turned(centres), radii));
         }
     }
+    tell(&format!("placing {count} particles densely"));
     match dense(&domain, repeats, &radii, seed) {
         Ok(centres) => Ok((turned(centres), radii)),
         Err(PackError::Dense { asked, reached }) => {

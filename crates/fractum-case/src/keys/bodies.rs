@@ -193,7 +193,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].sizes.largest", K::Quantity(D::LENGTH), "", "With a law, required there: largest diameter, at most 100 times the smallest"),
     key("bodies[].sizes.median", K::Quantity(D::LENGTH), "", "log-normal only, required there: diameter below which half of the mass lies, before it is cut off at both ends"),
     key("bodies[].sizes.deviation", K::Quantity(D::NONE), "", "log-normal only, required there: standard deviation of the natural logarithm, above 0 and at most 2"),
-    key("bodies[].solid_fraction", K::Quantity(D::NONE), "0.25 with sizes, group or stl", "Loose, with a shape: volume of the particles over that of the shape, above 0 and at most 0.9, instead of particles. One size reaches 0.64 without walls, less in narrow shapes, wide curves more; none touch. Of clumps the spheres around them count"),
+    key("bodies[].solid_fraction", K::Quantity(D::NONE), "0.25", "Loose, with a shape: volume of the particles over that of the shape, above 0 and at most 0.9, instead of particles; the default is that of sizes, groups and STL files. One size reaches 0.64 without walls, less in narrow shapes, wide curves more; none touch. Of clumps the spheres around them count"),
     key("bodies[].inlet", K::Table, "", "Loose, with a shape: the particles come in through the shape as time goes on, each at a free place by chance and with the body's initial_velocity; by one of mass_rate, number_rate. Explicit runs only"),
     key("bodies[].inlet.mass_rate", K::Quantity(D::MASS_RATE), "", "Mass that comes in a time, > 0"),
     key("bodies[].inlet.number_rate", K::Quantity(D::RATE), "", "Number of particles that come in a time, > 0"),

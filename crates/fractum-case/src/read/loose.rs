@@ -187,7 +187,7 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
     let shape = match &kind {
         Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
         None => {
-            table.pass_over(&["point", "size", "axis", "length", "radius", "unit", "group"]);
+            table.pass_over(&["point", "size", "axis", "length", "radius", "file", "unit", "group"]);
             None
         }
     };
