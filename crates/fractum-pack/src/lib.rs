@@ -6,6 +6,8 @@
 //!
 //! A box may repeat along its edges ([`Domain::Periodic`]): it has no walls.
 //!
+//! [`cloud`], [`insert`] and [`dense`] place loose spheres that do not touch.
+//!
 //! Not modelled: friction and gravity during packing, prescribed size distributions other than uniform.
 //!
 //! ```

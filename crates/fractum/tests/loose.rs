@@ -285,6 +285,7 @@ fn a_dense_cloud_begins_at_rest_and_settles_by_little() {
         for part in ["kinetic", "contact", "friction", "damping"] {
             assert_eq!(still["energy"][part].as_f64(), Some(0.0), "{part}: {}", still["energy"]);
         }
+        assert_eq!(run(&place, "again", "2")["state_hash"], still["state_hash"]);
         let place = Workplace::new(&text.replace("LOADS", "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }"));
         let fallen = run(&place, "fallen", "2");
         let value = |name: &str| fallen["probes"][name]["final"].as_f64().unwrap();
