@@ -273,9 +273,9 @@ fn a_dense_cloud_begins_at_rest_and_settles_by_little() {
             16e-3,
         ),
         (
-            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"16 mm\"\nradius = \"8 mm\"\nsizes = { passing = [[\"1 mm\", 0], [\"2 mm\", 0.5], [\"3 mm\", 1]] }\nsolid_fraction = 0.54",
-            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"16 mm\"\nradius = \"8 mm\"",
-            16e-3,
+            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"20 mm\"\nradius = \"10 mm\"\nsizes = { passing = [[\"1 mm\", 0], [\"2 mm\", 0.5], [\"3 mm\", 1]] }\nsolid_fraction = 0.58",
+            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"20 mm\"\nradius = \"10 mm\"",
+            20e-3,
         ),
     ];
     for (shape, container, height) in shapes {
