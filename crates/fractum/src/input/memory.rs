@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use fractum_case::build::{Replication, replication};
 use fractum_case::model::{
-    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, ParticleSize, Region, SolidBody,
+    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, ParticleSize, Region,
+    SolidBody,
 };
 use fractum_math::sphere_volume;
 use fractum_mesh::Mesh;
