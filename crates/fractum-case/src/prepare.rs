@@ -6,14 +6,14 @@
 use fractum_mesh::Mesh;
 use fractum_pack::{ClosedSurface, Domain, PackError, SurfaceData, read_stl_facets};
 use fractum_prepare::{
-    At, BondedReport, BondedRequest, BondedSubstance, Cache, Fault, LooseFill, LooseRequest, PackingRequest,
-    ParticleFile, PreparedBody, Shape, prepare_bonded, prepare_loose,
+    At, BondedReport, BondedRequest, BondedSubstance, Cache, Fault, Filled, LooseFill, LooseRequest, PackingRequest,
+    ParticleFile, PreparedBody, Region, Shape, prepare_bonded, prepare_loose,
 };
 use fractum_scene::ContactParameters;
 
 use crate::build::PreparedFacets;
 use crate::model::{
-    BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource, Material, PackingSource, Periodic, RigidShape,
+    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, Periodic, RigidShape,
     SolverKind,
 };
 use crate::{Diagnostic, Diagnostics, Place, Spanned};
@@ -62,7 +62,7 @@ pub fn prepare_bodies(case: &Case, mesh: &Mesh, cache: &Cache, tell: &dyn Fn(&st
                     Err(fault) => errors.push(of_bonded(case, &body.name, bonded, &fault)),
                 }
             }
-            BodyKind::Particles(loose) => match prepare_loose(&loose_request(loose, &case.materials[loose.material])) {
+            BodyKind::Particles(loose) => match prepare_loose(&loose_request(case, loose), mesh, tell) {
                 Ok(made) => {
                     all.reads.extend(made.read.map(|told| (body.name.value.clone(), told)));
                     all.prepared.push(made.body);
@@ -152,7 +152,8 @@ fn shape_of(shape: &BondedShape) -> Shape<'_> {
     })
 }
 
-fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<'a> {
+fn loose_request<'a>(case: &'a Case, loose: &'a LooseBody) -> LooseRequest<'a> {
+    let material = &case.materials[loose.material];
     let source = match &loose.source {
         LooseSource::File { file, unit, velocity_unit, frame, species } => LooseFill::File(ParticleFile {
             bytes: &file.bytes,
@@ -169,13 +170,30 @@ fn loose_request<'a>(loose: &'a LooseBody, material: &Material) -> LooseRequest<
             count: count.as_ref().map(|count| count.value),
             seed: *seed,
         },
-        LooseSource::Graded { region, grading, amount, seed } => {
-            LooseFill::Graded { region: &region.value, grading, amount: amount.value, seed: *seed }
+        LooseSource::Graded { shape, grading, amount, seed } => {
+            let filled = match &shape.value {
+                CloudShape::Region(region) => Filled::Region(region),
+                CloudShape::Group(group) => Filled::Group(&group.value),
+                CloudShape::Stl { file, unit } => Filled::Stl { bytes: &file.bytes, unit: *unit },
+            };
+            LooseFill::Graded { filled, grading, amount: amount.value, seed: *seed }
         }
         LooseSource::Inlet { stream, .. } => LooseFill::Stream(stream),
     };
     let clump = loose.clump.as_ref().map(|clump| &clump.value);
-    LooseRequest { source, density: material.density, young_modulus: material.young_modulus, clump }
+    let repeats = case.periodic.as_ref().map_or([false; 3], |own| repeats(own, &loose.source));
+    LooseRequest { source, density: material.density, young_modulus: material.young_modulus, clump, repeats }
+}
+
+/// Axes along which a periodic box repeats with the edges of the box that a cloud fills.
+fn repeats(periodic: &Periodic, source: &LooseSource) -> [bool; 3] {
+    let region = match source {
+        LooseSource::Cloud { region, .. } => &region.value,
+        LooseSource::Graded { shape: Spanned { value: CloudShape::Region(region), .. }, .. } => region,
+        _ => return [false; 3],
+    };
+    let Region::Box { point, size } = region else { return [false; 3] };
+    [0, 1, 2].map(|axis| periodic.axes[axis] && periodic.spans(axis, point[axis], size[axis]))
 }
 
 /// A fault with its place: where the case says what it is about.
@@ -208,9 +226,14 @@ fn of_loose(name: &Place, loose: &LooseBody, fault: &Fault) -> Diagnostic {
         (At::Size, LooseSource::Graded { amount, .. }) => placed(&amount.place, String::new(), fault),
         (At::Rate, LooseSource::Inlet { rate, .. }) => placed(rate, String::new(), fault),
         (At::Shape, LooseSource::Inlet { region, .. }) => placed(region, String::new(), fault),
-        (At::Shape, LooseSource::Cloud { region, .. } | LooseSource::Graded { region, .. }) => {
-            placed(&region.place, String::new(), fault)
+        (At::Shape, LooseSource::Cloud { region, .. }) => placed(&region.place, String::new(), fault),
+        (At::Source, LooseSource::Graded { shape: Spanned { value: CloudShape::Group(group), .. }, .. }) => {
+            named(group, fault)
         }
+        (At::Source, LooseSource::Graded { shape: Spanned { value: CloudShape::Stl { file, .. }, .. }, .. }) => {
+            named(&file.name, fault)
+        }
+        (At::Shape, LooseSource::Graded { shape, .. }) => placed(&shape.place, String::new(), fault),
         _ => placed(name, String::new(), fault),
     }
 }

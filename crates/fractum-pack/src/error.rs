@@ -88,6 +88,25 @@ pub enum PackError {
         /// Largest search factor tried.
         reach: f64,
     },
+    /// A sphere that has no room in its shape, empty as it is.
+    #[error("the shape has no room for a particle of radius {radius:.3e} m")]
+    NoRoom {
+        /// Radius of the sphere [m].
+        radius: f64,
+    },
+    /// Spheres of given sizes that do not fit at random places.
+    #[error(
+        "a solid fraction of {asked:.4} is out of reach: with these sizes and this seed random places end at {reached:.4} in this shape"
+    )]
+    Dense {
+        /// Fraction that was asked for.
+        asked: f64,
+        /// Largest one that was reached.
+        reached: f64,
+    },
+    /// More spheres than any random packing has.
+    #[error("a solid fraction of {0:.3} is more than any random packing has: those of one size end at 0.64")]
+    TooDense(f64),
     /// A stored packing that cannot be read.
     #[error("packing file: {0}; make it again with `fractum pack`")]
     File(String),

@@ -38,8 +38,11 @@ impl Grading {
         Grading { passing, number, mean_cube: 1.0 / all }
     }
 
-    /// As many particles of every diameter between two [m].
+    /// As many particles of every diameter between two [m], which may be one.
     pub fn uniform(smallest: f64, largest: f64) -> Self {
+        if smallest == largest {
+            return Grading::sieves(vec![[smallest, 0.0], [largest, 1.0]]);
+        }
         Grading::tabulated(smallest, largest, |_| 1.0)
     }
 

@@ -6,6 +6,8 @@
 //!
 //! A box may repeat along its edges ([`Domain::Periodic`]): it has no walls.
 //!
+//! [`cloud`], [`insert`] and [`dense`] place loose spheres that do not touch.
+//!
 //! Not modelled: friction and gravity during packing, prescribed size distributions other than uniform.
 //!
 //! ```
@@ -21,6 +23,7 @@
 mod certificate;
 mod cloud;
 mod cooker;
+mod dense;
 mod domain;
 mod error;
 mod grading;
@@ -42,6 +45,7 @@ mod wall_areas;
 pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};
 pub use cooker::{PackProgress, PackSize, PackSpec, pack, pack_and_tell, pack_certified};
+pub use dense::dense;
 pub use domain::{Domain, DomainData};
 pub use error::PackError;
 pub use grading::Grading;

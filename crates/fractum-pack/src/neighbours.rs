@@ -85,10 +85,9 @@ pub(crate) struct Neighbours {
 impl Neighbours {
     /// Pairs with |x_i − x_j| < factor (r_i + r_j) + gap, each listed on both sides; of the nearest images where space repeats.
     pub(crate) fn find(position: &[Vec3], radius: &[f64], factor: f64, gap: f64, period: Option<Period>) -> Self {
-        let largest = radius.iter().copied().fold(0.0, f64::max);
         let inside: Option<Vec<Vec3>> = period.map(|period| position.iter().map(|x| period.within(x)).collect());
         let position = inside.as_deref().unwrap_or(position);
-        let grid = Grid::new(position, factor * 2.0 * largest + gap);
+        let octaves = octaves(position, radius, |largest| factor * 2.0 * largest + gap);
         let blocks: Vec<(Vec<u32>, Vec<u32>)> = (0..position.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|block| {
@@ -97,18 +96,21 @@ impl Neighbours {
                 for i in block * BLOCK..((block + 1) * BLOCK).min(position.len()) {
                     let before = values.len();
                     let (x, r) = (position[i], radius[i]);
-                    let reach = factor * (r + largest) + gap;
-                    let mut look = |x: &Vec3| {
-                        grid.around(x, reach, |j| {
-                            let touch = factor * (r + radius[j as usize]) + gap;
-                            if j as usize != i && (position[j as usize] - x).norm_squared() < touch * touch {
-                                values.push(j);
-                            }
-                        });
-                    };
-                    match period {
-                        None => look(&x),
-                        Some(period) => period.images(x, reach).for_each(|image| look(&image)),
+                    for Octave { largest, members, grid } in &octaves {
+                        let reach = factor * (r + largest) + gap;
+                        let mut look = |x: &Vec3| {
+                            grid.around(x, reach, |member| {
+                                let j = members[member as usize];
+                                let touch = factor * (r + radius[j as usize]) + gap;
+                                if j as usize != i && (position[j as usize] - x).norm_squared() < touch * touch {
+                                    values.push(j);
+                                }
+                            });
+                        };
+                        match period {
+                            None => look(&x),
+                            Some(period) => period.images(x, reach).for_each(|image| look(&image)),
+                        }
                     }
                     values[before..].sort_unstable();
                     lengths.push((values.len() - before) as u32);
@@ -132,6 +134,31 @@ impl Neighbours {
     pub(crate) fn of(&self, i: usize) -> &[u32] {
         &self.values[self.offsets[i] as usize..self.offsets[i + 1] as usize]
     }
+}
+
+/// Spheres of which none is more than twice as large as another: fines are not looked for in cells as wide as the largest.
+struct Octave {
+    /// Largest radius [m].
+    largest: f64,
+    /// Which of all spheres they are, ascending.
+    members: Vec<u32>,
+    grid: Grid,
+}
+
+/// Spheres by octaves of their sizes, the largest first.
+///
+/// - `cell`: width of the cells of an octave, by its largest radius [m]
+fn octaves(position: &[Vec3], radius: &[f64], cell: impl Fn(f64) -> f64) -> Vec<Octave> {
+    let mut left: Vec<u32> = (0..position.len() as u32).collect();
+    let mut all = Vec::new();
+    while !left.is_empty() {
+        let largest = left.iter().map(|&i| radius[i as usize]).fold(0.0, f64::max);
+        let (members, smaller) = left.into_iter().partition::<Vec<u32>, _>(|&i| 2.0 * radius[i as usize] >= largest);
+        let places: Vec<Vec3> = members.iter().map(|&i| position[i as usize]).collect();
+        all.push(Octave { largest, grid: Grid::new(&places, cell(largest)), members });
+        left = smaller;
+    }
+    all
 }
 
 /// An order of points that follows a Morton curve, so that neighbours in space are neighbours in memory.
@@ -158,7 +185,7 @@ mod tests {
             points in prop::collection::vec(prop::array::uniform3(-2.0f64..3.0), 1..120), gap in 0.0f64..0.4,
         ) {
             let position: Vec<Vec3> = points.into_iter().map(Vec3::from).collect();
-            let radius: Vec<f64> = (0..position.len()).map(|i| 0.1 + 0.02 * (i % 7) as f64).collect();
+            let radius: Vec<f64> = (0..position.len()).map(|i| 0.02 * 1.5f64.powi((i % 7) as i32)).collect();
             let found = Neighbours::find(&position, &radius, 1.1, gap, None);
             for i in 0..position.len() {
                 let all: Vec<u32> = (0..position.len())

@@ -3,6 +3,7 @@ use rayon::prelude::*;
 
 use crate::domain::Domain;
 use crate::neighbours::{BLOCK, Neighbours};
+use crate::period::Period;
 
 /// Spheres with soft linear repulsion (unit stiffness, unit mass) between walls, relaxed by FIRE.
 ///
@@ -13,6 +14,14 @@ pub(crate) struct Assembly<'a> {
     pub(crate) radius: Vec<f64>,
     /// Stiffness of the walls relative to that of the spheres.
     pub(crate) wall_stiffness: f64,
+    /// How the box repeats in which the spheres are.
+    pub(crate) period: Option<Period>,
+    /// Overlap over the sum of the radii, of a wall over the radius, up to which spheres are no nearer than they may be.
+    pub(crate) accepted: f64,
+    /// Search skin in mean radii.
+    pub(crate) skin: f64,
+    /// Inverse of the mass of each.
+    pub(crate) mobility: Vec<f64>,
     velocity: Vec<Vec3>,
     force: Vec<Vec3>,
     /// Centre and radius side by side: one cache line per neighbour in the force loop.
@@ -27,10 +36,12 @@ pub(crate) struct Assembly<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     power: f64,
-    force: f64,
+    unbalanced: f64,
+    acceleration: f64,
     velocity: f64,
     overlap: f64,
     contacts: f64,
+    too_near: f64,
 }
 
 /// How a relaxation ended.
@@ -40,6 +51,8 @@ pub(crate) struct Relaxed {
     pub(crate) iterations: usize,
     /// Mean overlap of touching pairs [m].
     pub(crate) overlap: f64,
+    /// Whether all are as far apart as they must be.
+    pub(crate) is_free: bool,
 }
 
 // FIRE parameters (Bitzek et al. 2006, Phys. Rev. Lett. 97, 170201), time in units of √(m/k).
@@ -47,7 +60,7 @@ const DT_START: f64 = 0.1;
 const DT_MAX: f64 = 0.4;
 const ALPHA_START: f64 = 0.1;
 const PATIENCE: usize = 5;
-/// Search skin in mean radii.
+/// Search skin in mean radii, where nothing else is said.
 const SKIN: f64 = 0.15;
 
 impl<'a> Assembly<'a> {
@@ -58,6 +71,10 @@ impl<'a> Assembly<'a> {
             position,
             radius,
             wall_stiffness: 1.0,
+            period: domain.period(),
+            accepted: 0.0,
+            skin: SKIN,
+            mobility: vec![1.0; n],
             velocity: vec![Vec3::zeros(); n],
             force: vec![Vec3::zeros(); n],
             sphere: vec![[0.0; 4]; n],
@@ -73,6 +90,12 @@ impl<'a> Assembly<'a> {
         self.radius.iter().sum::<f64>() / self.radius.len() as f64
     }
 
+    /// Changes all radii [m].
+    pub(crate) fn set_radii(&mut self, radius: Vec<f64>) {
+        self.radius = radius;
+        self.searched = false;
+    }
+
     /// Multiplies all radii.
     pub(crate) fn scale_radii(&mut self, factor: f64) {
         self.radius.iter_mut().for_each(|r| *r *= factor);
@@ -80,8 +103,8 @@ impl<'a> Assembly<'a> {
     }
 
     fn search(&mut self) {
-        let skin = SKIN * self.mean_radius();
-        let period = self.domain.period();
+        let skin = self.skin * self.mean_radius();
+        let period = self.period;
         if let Some(period) = period {
             self.position.iter_mut().for_each(|x| *x = period.within(x));
         }
@@ -106,12 +129,12 @@ impl<'a> Assembly<'a> {
         self.searched = true;
     }
 
-    /// Moves to static equilibrium: net forces (root mean square) below `tolerance` times the mean contact force, or
-    /// overlaps below 1e-7 mean radii, or the iteration limit.
+    /// Moves until all are as far apart as they must be, or to static equilibrium: net forces (root mean square) below
+    /// `tolerance` times the mean contact force, or overlaps below 1e-7 mean radii, or the iteration limit.
     pub(crate) fn relax(&mut self, tolerance: f64, limit: usize) -> Relaxed {
         let n = self.position.len();
         let mean_radius = self.mean_radius();
-        let skin = SKIN * mean_radius;
+        let skin = self.skin * mean_radius;
         self.velocity.fill(Vec3::zeros());
         let (mut dt, mut alpha, mut uphill_free) = (DT_START, ALPHA_START, 0usize);
         for iteration in 0..limit {
@@ -120,9 +143,10 @@ impl<'a> Assembly<'a> {
             }
             let sums = self.forces();
             let overlap = sums.overlap / sums.contacts.max(1.0);
-            let unbalanced = (sums.force / n as f64).sqrt();
-            if unbalanced < (tolerance * overlap).max(1e-8 * mean_radius) {
-                return Relaxed { iterations: iteration, overlap };
+            let unbalanced = (sums.unbalanced / n as f64).sqrt();
+            let is_free = sums.too_near == 0.0;
+            if is_free || unbalanced < (tolerance * overlap).max(1e-8 * mean_radius) {
+                return Relaxed { iterations: iteration, overlap, is_free };
             }
             let mut stop = false;
             if sums.power > 0.0 {
@@ -137,7 +161,7 @@ impl<'a> Assembly<'a> {
                 alpha = ALPHA_START;
                 stop = true;
             }
-            let steer = if sums.force > 0.0 { alpha * (sums.velocity / sums.force).sqrt() } else { 0.0 };
+            let steer = if sums.acceleration > 0.0 { alpha * (sums.velocity / sums.acceleration).sqrt() } else { 0.0 };
             let keep = if stop { 0.0 } else { 1.0 - alpha };
             let steer = if stop { 0.0 } else { steer };
             // No sphere travels further than a fraction of its radius in one step, however deep the first overlaps are.
@@ -174,15 +198,28 @@ impl<'a> Assembly<'a> {
             self.search();
         }
         let sums = self.forces();
-        Relaxed { iterations: limit, overlap: sums.overlap / sums.contacts.max(1.0) }
+        let overlap = sums.overlap / sums.contacts.max(1.0);
+        Relaxed { iterations: limit, overlap, is_free: sums.too_near == 0.0 }
     }
 
     /// Gathers the contact forces of every particle; sums in block order.
     fn forces(&mut self) -> Sums {
         let Assembly {
-            domain, position, radius, velocity, force, sphere, neighbours, near_walls, wall_stiffness, ..
+            domain,
+            position,
+            radius,
+            velocity,
+            force,
+            sphere,
+            neighbours,
+            near_walls,
+            wall_stiffness,
+            period,
+            accepted,
+            mobility,
+            ..
         } = self;
-        let period = domain.period();
+        let (period, accepted) = (*period, *accepted);
         let partial: Vec<Sums> = force
             .par_chunks_mut(BLOCK)
             .enumerate()
@@ -207,12 +244,18 @@ impl<'a> Assembly<'a> {
                             f += d * (overlap / distance.max(1e-12 * touch));
                             sums.overlap += overlap;
                             sums.contacts += 1.0;
+                            sums.too_near += f64::from(u8::from(overlap > accepted * touch));
                         }
                     }
                     let candidates = if near_walls.is_empty() { &[][..] } else { near_walls.row(i) };
-                    domain.contacts(&x, r, candidates, |c| f += c.inward * (*wall_stiffness * c.overlap));
+                    domain.contacts(&x, r, candidates, |c| {
+                        f += c.inward * (*wall_stiffness * c.overlap);
+                        sums.too_near += f64::from(u8::from(c.overlap > accepted * r));
+                    });
                     sums.power += f.dot(&velocity[i]);
-                    sums.force += f.norm_squared();
+                    sums.unbalanced += f.norm_squared();
+                    f *= mobility[i];
+                    sums.acceleration += f.norm_squared();
                     sums.velocity += velocity[i].norm_squared();
                     *total = f;
                 }
@@ -221,10 +264,12 @@ impl<'a> Assembly<'a> {
             .collect();
         partial.into_iter().fold(Sums::default(), |a, b| Sums {
             power: a.power + b.power,
-            force: a.force + b.force,
+            unbalanced: a.unbalanced + b.unbalanced,
+            acceleration: a.acceleration + b.acceleration,
             velocity: a.velocity + b.velocity,
             overlap: a.overlap + b.overlap,
             contacts: a.contacts + b.contacts,
+            too_near: a.too_near + b.too_near,
         })
     }
 
@@ -255,7 +300,7 @@ impl<'a> Assembly<'a> {
         if !self.searched {
             self.search();
         }
-        let period = self.domain.period();
+        let period = self.period;
         let nearest = |apart: Vec3| period.map_or(apart, |period| period.nearest(apart));
         let contacts = (0..self.position.len())
             .into_par_iter()

@@ -103,6 +103,8 @@ pub struct LooseRequest<'a> {
     pub young_modulus: f64,
     /// What each of them is, where it is no single sphere.
     pub clump: Option<&'a Clump>,
+    /// Axes along which space repeats with the edges of the box that they fill.
+    pub repeats: [bool; 3],
 }
 
 /// Rigid grains of several spheres in the place of single ones: each fills the sphere around its centre of mass whose radius is asked for.
@@ -158,15 +160,15 @@ pub enum LooseFill<'a> {
         radius: f64,
         /// (R_max − R_min)/R_mean of the radii, 0 to 1.
         dispersion: f64,
-        /// At most so many; `None` = as many as there is room for.
+        /// So many, more densely where that is needed; `None` = as many as there is room for.
         count: Option<u64>,
         /// Seed of radii and places.
         seed: u64,
     },
     /// A cloud of given sizes at random places: no two touch.
     Graded {
-        /// The region.
-        region: &'a Region,
+        /// The shape.
+        filled: Filled<'a>,
         /// Sizes of its particles.
         grading: &'a Grading,
         /// How many.
@@ -176,6 +178,22 @@ pub enum LooseFill<'a> {
     },
     /// Particles that come into the run as time goes on.
     Stream(&'a Stream),
+}
+
+/// What a cloud of given sizes fills.
+#[derive(Clone, Copy, Debug)]
+pub enum Filled<'a> {
+    /// A region of space.
+    Region(&'a Region),
+    /// A mesh group: tetrahedra, or triangles that enclose a volume.
+    Group(&'a str),
+    /// The closed surface of an STL file.
+    Stl {
+        /// Content of the file.
+        bytes: &'a [u8],
+        /// Length of its unit [m].
+        unit: f64,
+    },
 }
 
 /// Particles that come into a run as time goes on, at random places of a region.
@@ -327,13 +345,13 @@ impl Region {
     }
 }
 
-/// Particles of given sizes in a region, at least one.
-pub fn graded_count(region: &Region, grading: &Grading, amount: Amount) -> f64 {
+/// Particles of given sizes in a volume [m³], at least one.
+pub fn graded_count(volume: f64, grading: &Grading, amount: Amount) -> f64 {
     match amount {
         Amount::Count(count) => count as f64,
         Amount::Fraction(share) => {
             let mean = grading.mean_cube() * std::f64::consts::PI / 6.0;
-            (share * region.volume() / mean).round().max(1.0)
+            (share * volume / mean).round().max(1.0)
         }
     }
 }

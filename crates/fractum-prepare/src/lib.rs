@@ -9,10 +9,13 @@
 //!
 //! ```
 //! use fractum_math::Vec3;
+//! use fractum_mesh::Mesh;
 //! use fractum_prepare::{LooseFill, LooseRequest, Region, prepare_loose};
 //! let region = Region::Box { point: Vec3::zeros(), size: Vec3::repeat(1.0) };
 //! let source = LooseFill::Cloud { region: &region, radius: 0.1, dispersion: 0.0, count: Some(20), seed: 1 };
-//! let made = prepare_loose(&LooseRequest { source, density: 2500.0, young_modulus: 70e9, clump: None }).unwrap().body;
+//! let (density, young_modulus, repeats) = (2500.0, 70e9, [false; 3]);
+//! let made = prepare_loose(&LooseRequest { source, density, young_modulus, clump: None, repeats }, &Mesh::default(), &|_| {});
+//! let made = made.unwrap().body;
 //! assert_eq!((made.particles.len(), made.pairs.len()), (20, 0));
 //! ```
 
@@ -27,7 +30,7 @@ mod particle_file;
 mod region;
 
 pub use asked::{
-    Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Clump, Doubt, Fault, InterfaceArea,
+    Amount, At, BondLawKind, BondStrength, BondedRequest, BondedSubstance, Clump, Doubt, Fault, Filled, InterfaceArea,
     Interfaces, LooseFill, LooseRequest, PackingRequest, ParticleFile, ParticleSize, Rate, Region, Shape, Stream, Turn,
     graded_count,
 };

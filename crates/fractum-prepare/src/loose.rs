@@ -3,12 +3,16 @@
 use std::sync::Arc;
 
 use fractum_dem::{BeamSection, Clumps, Particles};
-use fractum_math::{Rotation, Vec3, sphere_volume};
-use fractum_pack::{Grading, cloud, insert, orientations, place_in};
+use fractum_math::{Rotation, Vec3, rotation_between, sphere_volume};
+use fractum_mesh::Mesh;
+use fractum_pack::{Domain, Grading, PackError, cloud, dense, insert, orientations, place_in, read_stl};
 use fractum_scene::Arrivals;
 
-use crate::asked::{Amount, At, Clump, Fault, LooseFill, LooseRequest, Rate, Region, Stream, Turn, graded_count};
+use crate::asked::{
+    Amount, At, Clump, Fault, Filled, LooseFill, LooseRequest, Rate, Region, Stream, Turn, graded_count,
+};
 use crate::body::PreparedBody;
+use crate::bonded::group_surface;
 use crate::particle_file;
 
 /// Loose particles that were made.
@@ -21,9 +25,11 @@ pub struct MadeParticles {
 
 /// Makes loose particles ready.
 ///
+/// - `tell`: called with what is being done, where it takes long
+///
 /// # Errors
 /// A file that holds no spheres; a region without room.
-pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
+pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh, tell: &dyn Fn(&str)) -> Result<MadeParticles, Fault> {
     let (mut file, mut arrivals) = (None, None);
     let (position, radius, at) = match asked.source {
         LooseFill::File(of) => {
@@ -33,11 +39,13 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
         LooseFill::Single { centre, radius } => (vec![centre], vec![radius], At::Body),
         LooseFill::Cloud { region, radius, dispersion, count, seed } => {
             let most = count.map_or(usize::MAX, |count| count as usize);
-            let (centres, radii) = fill(region, radius, dispersion, most, seed);
+            let (mut centres, mut radii) = fill(region, radius, dispersion, most, seed);
             match count {
-                Some(_) if centres.len() < most => {
-                    let fault = Fault::new(At::Size, format!("there is room for {} only", centres.len()));
-                    return Err(fault.remedy("a larger region, smaller particles, or fewer"));
+                Some(count) if centres.len() < most => {
+                    let (half, mean) = (0.5 * dispersion, 2.0 * radius);
+                    let grading = Grading::uniform(mean * (1.0 - half), mean * (1.0 + half));
+                    let shape = domain(Filled::Region(region), mesh)?;
+                    (centres, radii) = fill_graded(shape, asked.repeats, &grading, Amount::Count(count), seed, tell)?;
                 }
                 None if centres.is_empty() => {
                     let fault = Fault::new(At::Shape, "no particle of that radius has room in the region");
@@ -47,8 +55,8 @@ pub fn prepare_loose(asked: &LooseRequest<'_>) -> Result<MadeParticles, Fault> {
             }
             (centres, radii, At::Shape)
         }
-        LooseFill::Graded { region, grading, amount, seed } => {
-            let (centres, radii) = fill_graded(region, grading, amount, seed)?;
+        LooseFill::Graded { filled, grading, amount, seed } => {
+            let (centres, radii) = fill_graded(domain(filled, mesh)?, asked.repeats, grading, amount, seed, tell)?;
             (centres, radii, At::Shape)
         }
         LooseFill::Stream(stream) => {
@@ -120,8 +128,20 @@ fn clump_places(clump: &Clump, centres: Vec<Vec3>, radii: Vec<f64>) -> Vec<(Vec3
 /// Particles that may be asked for.
 const MOST: f64 = 2e7;
 
-fn fill_graded(region: &Region, grading: &Grading, amount: Amount, seed: u64) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
-    let count = graded_count(region, grading, amount);
+/// What to do about a region that is too full.
+const FEWER: &str = "fewer particles or a lower solid_fraction, a wider curve, or a larger region";
+/// Solid fraction up to which places are drawn until they are free; beyond it the particles push each other apart.
+const LOOSE: f64 = 0.3;
+
+fn fill_graded(
+    (domain, turn): (Domain, Turned),
+    repeats: [bool; 3],
+    grading: &Grading,
+    amount: Amount,
+    seed: u64,
+    tell: &dyn Fn(&str),
+) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
+    let count = graded_count(domain.volume(), grading, amount);
     if count > MOST {
         let fault =
             Fault::new(At::Size, format!("asks for {count:.2e} particles of these sizes, more than {MOST:.0e}"));
@@ -129,14 +149,65 @@ fn fill_graded(region: &Region, grading: &Grading, amount: Amount, seed: u64) ->
     }
     let diameters = grading.draw(count as usize, seed);
     let radii: Vec<f64> = diameters.iter().map(|diameter| 0.5 * diameter).collect();
-    let (lower, upper) = bounds(region);
     // Places have numbers of their own.
-    let centres = insert(&lower, &upper, depth_in(region), &radii, !seed);
-    if centres.len() < radii.len() {
-        let found = format!("there is room for {} of {} particles, largest first", centres.len(), radii.len());
-        return Err(Fault::new(At::Size, found).remedy("a lower solid_fraction or fewer particles, or a larger region"));
+    let seed = !seed;
+    let turned = |centres: Vec<Vec3>| centres.iter().map(|x| turn.place(x)).collect();
+    if radii.iter().copied().map(sphere_volume).sum::<f64>() <= LOOSE * domain.volume() {
+        let (lower, upper) = domain.bounds();
+        let centres = insert(&lower, &upper, |x| domain.depth(x), &radii, seed);
+        if centres.len() == radii.len() {
+            return Ok((turned(centres), radii));
+        }
     }
-    Ok((centres, radii))
+    tell(&format!("placing {count} particles densely"));
+    match dense(&domain, repeats, &radii, seed) {
+        Ok(centres) => Ok((turned(centres), radii)),
+        Err(PackError::Dense { asked, reached }) => {
+            let room = (reached / asked * count).floor();
+            let found = format!(
+                "fills {asked:.3} of the shape with {count} particles, and random places of these sizes end at {reached:.3} there: there is room for {room} only"
+            );
+            Err(Fault::new(At::Size, found).remedy(FEWER))
+        }
+        Err(error @ PackError::NoRoom { .. }) => {
+            Err(Fault::new(At::Shape, error).remedy("a larger region, or smaller particles"))
+        }
+        Err(error @ PackError::TooDense(_)) => Err(Fault::new(At::Size, error).remedy(FEWER)),
+        Err(error) => Err(Fault::new(At::Shape, error)),
+    }
+}
+
+/// How a shape is turned about a point of it.
+struct Turned {
+    about: Vec3,
+    by: Option<Rotation>,
+}
+
+impl Turned {
+    fn place(&self, x: &Vec3) -> Vec3 {
+        self.by.map_or(*x, |by| self.about + by * (x - self.about))
+    }
+}
+
+/// What is filled as a shape that can be packed, and how that is turned.
+fn domain(filled: Filled<'_>, mesh: &Mesh) -> Result<(Domain, Turned), Fault> {
+    let as_it_is = Turned { about: Vec3::zeros(), by: None };
+    let surface = match filled {
+        Filled::Region(&Region::Box { point, size }) => {
+            return Ok((Domain::Box { lower: point, upper: point + size }, as_it_is));
+        }
+        Filled::Region(&Region::Sphere { point, radius }) => {
+            return Ok((Domain::Sphere { centre: point, radius }, as_it_is));
+        }
+        Filled::Region(&Region::Cylinder { point, axis, length, radius }) => {
+            let turned = Turned { about: point, by: Some(rotation_between(&Vec3::x(), &axis)) };
+            return Ok((Domain::Cylinder { start: point, length, radius }, turned));
+        }
+        Filled::Group(group) => group_surface(mesh, Some(group)),
+        Filled::Stl { bytes, unit } => read_stl(bytes, unit),
+    };
+    let surface = surface.map_err(|error| Fault::new(At::Source, error))?;
+    Ok((Domain::Surface(surface), as_it_is))
 }
 
 /// Radii of the particles of a stream [m], and when each is due [s]: when the rate has brought it as a whole.

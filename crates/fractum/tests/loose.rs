@@ -215,7 +215,10 @@ fn wrong_particles_and_bodies_are_explained() {
     for (old, new, words) in [
         ("file = \"more.csv\"", "file = \"paddle.stl\"", "expected rows of x, y, z, radius"),
         ("particle_radius = \"2 mm\"", "particle_radius = \"2 m\"", "has room in the region"),
-        ("particle_radius = \"2 mm\"", "particle_radius = \"2 mm\"\nparticles = 100000", "there is room for"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"2 mm\"\nparticles = 200", "there is room for 1"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"2 mm\"\nparticles = 100000", "than any random packing"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"2 mm\"\nsolid_fraction = 0.66", "end at 0.5"),
+        ("particle_radius = \"2 mm\"", "particle_radius = \"12 mm\"\nsolid_fraction = 0.6", "has no room for"),
         ("file = \"paddle.stl\"", "file = \"more.csv\"", "bodies[5].file"),
     ] {
         assert!(HEAP.contains(old), "{old}");
@@ -231,6 +234,113 @@ fn wrong_particles_and_bodies_are_explained() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let said = format!("{}{}", ended.stdout, ended.stderr);
     assert!(said.contains("particle 0 of more and particle 1 of more, by 2 mm"), "{said}");
+}
+
+/// Beads that fill a container densely at once.
+const DENSE: &str = r#"fractum = 1
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.25
+contact = { friction = 0.5, restitution = 0.3 }
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "glass"
+SHAPE
+[[bodies]]
+name = "container"
+kind = "rigid"
+CONTAINER
+inside = true
+LOADS
+[solver]
+end = "50 ms"
+[[probes]]
+name = "settled"
+displacement = { group = "beads", along = "z" }
+[[probes]]
+name = "speed"
+velocity = { group = "beads", along = "z" }
+"#;
+
+#[test]
+fn a_dense_cloud_begins_at_rest_and_settles_by_little() {
+    let shapes = [
+        (
+            "shape = \"box\"\nsize = [\"16 mm\", \"16 mm\", \"16 mm\"]\nparticle_radius = \"1 mm\"\nsolid_fraction = 0.57",
+            "shape = \"box\"\nsize = [\"16 mm\", \"16 mm\", \"16 mm\"]",
+            16e-3,
+        ),
+        (
+            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"20 mm\"\nradius = \"10 mm\"\nsizes = { passing = [[\"1 mm\", 0], [\"2 mm\", 0.5], [\"3 mm\", 1]] }\nsolid_fraction = 0.58",
+            "shape = \"cylinder\"\naxis = \"z\"\nlength = \"20 mm\"\nradius = \"10 mm\"",
+            20e-3,
+        ),
+    ];
+    for (shape, container, height) in shapes {
+        let text = DENSE.replace("SHAPE", shape).replace("CONTAINER", container);
+        let place = Workplace::new(&text.replace("LOADS", ""));
+        let still = run(&place, "still", "1");
+        for part in ["kinetic", "contact", "friction", "damping"] {
+            assert_eq!(still["energy"][part].as_f64(), Some(0.0), "{part}: {}", still["energy"]);
+        }
+        assert_eq!(run(&place, "again", "2")["state_hash"], still["state_hash"]);
+        let place = Workplace::new(&text.replace("LOADS", "[[loads]]\ngravity = { z = \"-9.81 m/s^2\" }"));
+        let fallen = run(&place, "fallen", "2");
+        let value = |name: &str| fallen["probes"][name]["final"].as_f64().unwrap();
+        println!("settled by {:.4} of the height, {:.1e} m/s", value("settled") / height, value("speed"));
+        assert!((-0.04 * height..0.0).contains(&value("settled")), "{}", value("settled"));
+        assert!(fallen["energy"]["residual_max_relative"].as_f64().unwrap() < 1e-3, "{}", fallen["energy"]);
+    }
+}
+
+/// Beads that fill what a file gives.
+const FILLED: &str = r#"fractum = 1
+MESH
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "10 MPa"
+poisson_ratio = 0.25
+[[bodies]]
+name = "beads"
+kind = "particles"
+material = "glass"
+SHAPE
+solid_fraction = 0.5
+[solver]
+end = "1 ms"
+"#;
+
+#[test]
+fn mesh_groups_and_closed_surfaces_are_filled() {
+    let mesh = "[mesh]\nfile = \"bar.msh\"";
+    let group = "shape = \"group\"\ngroup = \"body\"\nparticle_radius = \"6 mm\"\ndispersion = 0.2";
+    let surface = "shape = \"stl\"\nfile = \"paddle.stl\"\nunit = \"mm\"\nparticle_radius = \"0.1 mm\"";
+    // A bar, and a wedge of 12 x 1.4 x 7 mm; the mean of r³ at a dispersion of 0.2.
+    let cases = [
+        (mesh, group, 0.4 * 0.12 * 0.12, 6e-3f64.powi(3) * 1.01),
+        ("", surface, 0.5 * 12e-3 * 1.4e-3 * 7e-3, 1e-4f64.powi(3)),
+    ];
+    for (mesh, shape, volume, cube) in cases {
+        let place = place(&FILLED.replace("MESH", mesh).replace("SHAPE", shape));
+        let found = run(&place, "out", "1");
+        let count = found["counts"]["particles"].as_f64().unwrap();
+        let expected = 0.5 * volume / (4.0 / 3.0 * std::f64::consts::PI * cube);
+        assert!((count / expected - 1.0).abs() < 1e-2, "{count} of {expected}");
+        assert_eq!(found["energy"]["contact"].as_f64(), Some(0.0), "{}", found["energy"]);
+    }
+    for (mesh, shape, words) in [
+        ("", group, "mesh.file is missing"),
+        (mesh, &group.replace("\"body\"", "\"bdy\""), "expected a physical group"),
+        (mesh, &group.replace("\"body\"", "\"x-\""), "not closed"),
+        ("", &surface.replace("0.1 mm", "3 mm"), "has no room for"),
+        ("", &format!("{surface}\ninlet = {{ number_rate = \"1 1/s\", until = \"1 s\" }}"), "expected \"box\""),
+    ] {
+        let ended = place(&FILLED.replace("MESH", mesh).replace("SHAPE", shape)).fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(1), "{shape}: {}", ended.stderr);
+        assert!(ended.stderr.contains(words), "{words}: {}", ended.stderr);
+    }
 }
 
 /// Two overlapping beads on a floor that they overlap too, and a solid bar with a corner in a rigid sphere.

@@ -15,8 +15,6 @@ use crate::{Diagnostic, Place};
 
 /// Component of the normal of a plane along an axis that is rounding.
 const ACROSS: f64 = 1e-9;
-/// Difference of two boxes over their smallest edge that is rounding.
-const SAME: f64 = 1e-9;
 
 /// Refuses what knows no box that repeats, and probes of one that is not there.
 pub(super) fn check(context: &mut Context<'_>) {
@@ -160,8 +158,7 @@ fn refused_of_bonded<'c>(
     }
     let fills = |shape: &BondedShape| {
         let BondedShape::Box { point, size } = shape else { return false };
-        let limit = SAME * periodic.size.value.min();
-        (point - periodic.point).amax() <= limit && (size - periodic.size.value).amax() <= limit
+        (0..3).all(|axis| periodic.spans(axis, point[axis], size[axis]))
     };
     match &bonded.packing {
         PackingSource::File(file) => {

@@ -120,7 +120,7 @@ fn check_names(context: &mut Context<'_>) {
             }
             PackingSource::Particles { .. } | PackingSource::File(_) => false,
         },
-        BodyKind::Particles(_) => false,
+        BodyKind::Particles(loose) => loose.group().is_some_and(|group| group.value == name),
     };
     let is_taken = |body: &Body| {
         let name = body.name.value.as_str();

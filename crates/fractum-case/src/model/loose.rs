@@ -22,6 +22,32 @@ pub struct LooseBody {
     pub initial_velocity: [Option<Spanned<Field>>; 3],
 }
 
+impl LooseBody {
+    /// Mesh group that they fill.
+    pub fn group(&self) -> Option<&Spanned<String>> {
+        match &self.source {
+            LooseSource::Graded { shape: Spanned { value: CloudShape::Group(group), .. }, .. } => Some(group),
+            _ => None,
+        }
+    }
+}
+
+/// Shapes that a cloud of given sizes can fill.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CloudShape {
+    /// One that needs no file.
+    Region(Region),
+    /// A mesh group: tetrahedra, or triangles that enclose a volume.
+    Group(Spanned<String>),
+    /// The closed surface of an STL file.
+    Stl {
+        /// The file.
+        file: FileContent,
+        /// Length of its unit [m].
+        unit: f64,
+    },
+}
+
 /// Where loose particles come from.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LooseSource {
@@ -60,8 +86,8 @@ pub enum LooseSource {
     },
     /// A cloud of given sizes at random places: no two touch.
     Graded {
-        /// The region, with its place.
-        region: Spanned<Region>,
+        /// The shape, with its place.
+        shape: Spanned<CloudShape>,
         /// Sizes of its particles.
         grading: Grading,
         /// How many, with the place.

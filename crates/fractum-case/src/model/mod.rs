@@ -49,7 +49,7 @@ pub use heat::{Flows, Heat, HeatCondition, HeatKind, HeatScheme, Thermal};
 pub use interface::{Interface, InterfaceFaces};
 pub use line::CRACK_LINE;
 pub use liquid::{Liquid, LiquidInjection};
-pub use loose::{LooseBody, LooseSource};
+pub use loose::{CloudShape, LooseBody, LooseSource};
 pub use material::{Beds, Damage, Material};
 pub use network::{GrainsWithin, JointSource, Joints, Network};
 pub use output::Output;
@@ -337,7 +337,7 @@ impl Case {
                 RigidShape::Group { group, .. } => Some((group, GroupUse::Tool)),
                 _ => None,
             },
-            BodyKind::Particles(_) => None,
+            BodyKind::Particles(loose) => loose.group().map(|group| (group, GroupUse::Filled)),
         });
         let is_body = |name: &str| self.bodies.iter().any(|body| body.name.value == name);
         let ties = self.ties.iter().map(|tie| (&tie.solid, GroupUse::Facets));

@@ -32,7 +32,18 @@ pub struct BoxServo {
     pub slows_at: f64,
 }
 
+/// Difference of two boxes over their smallest edge that is rounding.
+const SAME: f64 = 1e-9;
+
 impl Periodic {
+    /// Whether a box goes from one side to the other along an axis.
+    ///
+    /// - `point`, `size` [m]: where it begins, and how long it is
+    pub fn spans(&self, axis: usize, point: f64, size: f64) -> bool {
+        let limit = SAME * self.size.value.min();
+        (point - self.point[axis]).abs() <= limit && (size - self.size.value[axis]).abs() <= limit
+    }
+
     /// Its functions of time.
     pub fn functions(&self) -> impl Iterator<Item = &Spanned<TimeFunction>> {
         let stresses = self.servo.iter().flat_map(|servo| servo.stress.iter().map(|(_, stress)| stress));

@@ -21,7 +21,7 @@ const DISPERSION: f64 = 0.25;
 
 /// Kinds of shapes.
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+pub(super) enum Kind {
     Box,
     Cylinder,
     Sphere,
@@ -159,8 +159,7 @@ fn packing(table: &Table<'_>) -> Option<PackingSource> {
         }
         return file(table, "packing").map(PackingSource::File);
     }
-    let is_stl = table.peek("shape").is_some_and(|node| matches!(&node.value, Value::Text(text) if text == "stl"));
-    if table.has("file") && !is_stl {
+    if table.has("file") && !is_stl(table) {
         return particles(table);
     }
     for key in FILE_KEYS {
@@ -278,11 +277,22 @@ fn shape(table: &Table<'_>, kind: Kind, beside: &[&str]) -> Option<BondedShape> 
         }
         Kind::Group => BondedShape::Group(table.text("group").spanned().required()?),
         Kind::Stl => {
-            let file = file(table, "file");
-            let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
-            BondedShape::Stl { file: file?, unit: unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH)) }
+            let (file, unit) = stl(table)?;
+            BondedShape::Stl { file, unit }
         }
     })
+}
+
+/// Whether the file of a body is that of its shape.
+pub(super) fn is_stl(table: &Table<'_>) -> bool {
+    table.peek("shape").is_some_and(|node| matches!(&node.value, Value::Text(text) if text == "stl"))
+}
+
+/// The STL file of a shape, and the length of its unit [m].
+pub(super) fn stl(table: &Table<'_>) -> Option<(FileContent, f64)> {
+    let file = file(table, "file");
+    let unit = optional(table, "unit", |name| unit(table, name, Dimension::LENGTH));
+    Some((file?, unit?.unwrap_or(table.reader.scale.of(Dimension::LENGTH))))
 }
 
 fn size(table: &Table<'_>) -> Option<Spanned<ParticleSize>> {

@@ -2,22 +2,16 @@
 
 use fractum_dem::ClumpShape;
 use fractum_math::{Rotation, Vec3, rotation_by};
+use fractum_pack::Grading;
 
-use super::bonded::{DISPERSION_RANGE, file, frame, groups};
+use super::bonded::{DISPERSION_RANGE, Kind, SHAPES, file, frame, groups, is_stl, stl};
 use super::{file_unit, inlet, metres, sizes};
-use crate::model::{Amount, Clump, LooseBody, LooseSource, Region, Sizes, Turn};
+use crate::model::{Amount, CloudShape, Clump, LooseBody, LooseSource, Region, Sizes, Turn};
 use crate::reader::Table;
 use crate::reader::presence::optional;
 use crate::reader::vectors::{direction, initial_velocity, point};
 use crate::unit::Dimension;
 use crate::{Diagnostic, Spanned};
-
-#[derive(Clone, Copy)]
-enum Kind {
-    Box,
-    Cylinder,
-    Sphere,
-}
 
 /// Reads loose particles of the material at `material`, which is nothing where it is wrong.
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
@@ -25,7 +19,7 @@ pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseB
     let turn = turn(table, shape.is_some());
     let size = shape.as_ref().and_then(|shape| shape.as_ref()).map(|shape| shape.value.radius());
     let has_centre = !table.has("file") && table.has("centre");
-    let source = if table.has("file") {
+    let source = if table.has("file") && !is_stl(table) {
         from_file(table, shape.is_some())
     } else if has_centre {
         single(table, size)
@@ -93,7 +87,7 @@ fn turn(table: &Table<'_>, is_clump: bool) -> Option<Option<Rotation>> {
 }
 
 /// Keys of a shape that is filled with particles.
-const OF_SHAPES: [&str; 11] = [
+const OF_SHAPES: [&str; 12] = [
     "shape",
     "point",
     "size",
@@ -105,6 +99,7 @@ const OF_SHAPES: [&str; 11] = [
     "sizes",
     "solid_fraction",
     "inlet",
+    "group",
 ];
 
 /// A particle at a given place.
@@ -163,17 +158,20 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
     for key in ["velocity_unit", "frame", "species"] {
         table.refuse(key, "without a file of particles");
     }
-    let graded = table.has("sizes");
-    let kinds = [("box", Kind::Box), ("cylinder", Kind::Cylinder), ("sphere", Kind::Sphere)];
-    let kind = table.one_of("shape", &kinds).spanned().given();
+    let has_inlet = table.has("inlet");
+    let (graded, by_fraction) = (table.has("sizes"), table.has("solid_fraction"));
+    let kinds = [Kind::Box, Kind::Cylinder, Kind::Sphere, Kind::Group, Kind::Stl].into_iter().zip(SHAPES);
+    let kinds: Vec<(&'static str, Kind)> = kinds.map(|(kind, name)| (name, kind)).collect();
+    let kind = table.one_of("shape", if has_inlet { &kinds[..3] } else { &kinds }).spanned().given();
     let radius = if graded {
         for key in ["particle_radius", "dispersion"] {
             table.refuse(key, "beside sizes");
         }
         Some(0.0)
+    } else if table.has("shape") {
+        radius(table, size)
     } else {
-        table.refuse("solid_fraction", "without sizes");
-        if table.has("shape") { radius(table, size) } else { table.quantity("particle_radius").positive().given() }
+        table.quantity("particle_radius").positive().given()
     };
     let count = optional(table, "particles", |name| {
         let count = table.integer(name).check(|count| (1..=20_000_000).contains(count), "1 to 20 million");
@@ -186,19 +184,24 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
         dispersion.or_if_absent(0.0)
     };
     let grading = if graded { sizes::sizes(table).map(Some) } else { Some(None) };
-    let has_inlet = table.has("inlet");
+    let shape = match &kind {
+        Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
+        None => {
+            table.pass_over(&["point", "size", "axis", "length", "radius", "file", "unit", "group"]);
+            None
+        }
+    };
+    // Places are drawn within cells of a region where nothing says how many particles there are.
+    let is_region = matches!(&shape, None | Some(Spanned { value: CloudShape::Region(_), .. }));
+    let by_amount = !has_inlet && (graded || by_fraction || !is_region);
     if has_inlet {
         table.refuse("solid_fraction", "beside inlet, whose rate says how many there are");
     }
-    let amount =
-        if graded && !has_inlet { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
+    let amount = if by_amount { amount(table, count.as_ref().is_some_and(Option::is_some)) } else { Some(None) };
     let seed = table.integer("seed").or_if_absent(1);
-    let region = match &kind {
-        Some(kind) => region(table, kind.value).map(|region| Spanned::new(region, kind.place.clone())),
-        None => {
-            table.pass_over(&["point", "size", "axis", "length", "radius", "unit"]);
-            None
-        }
+    let region = |shape: Option<Spanned<CloudShape>>| match shape? {
+        Spanned { value: CloudShape::Region(region), place } => Some(Spanned::new(region, place)),
+        _ => None,
     };
     if has_inlet {
         let most = count.as_ref().map(|count| count.as_ref().map(|count| count.value));
@@ -207,14 +210,19 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
             Some(grading) => Sizes::Graded(grading),
             None => Sizes::Uniform { radius: radius?, dispersion: dispersion? },
         };
-        return inlet?.source(region?, sizes, most?, seed?);
+        return inlet?.source(region(shape)?, sizes, most?, seed?);
     }
-    if let Some(grading) = grading? {
-        let (region, seed, count) = (region?, seed?, count?);
+    if by_amount {
+        let of_one_law = |(radius, dispersion): (f64, f64)| {
+            Grading::uniform(radius * (2.0 - dispersion), radius * (2.0 + dispersion))
+        };
+        let grading = grading?.or_else(|| radius.zip(dispersion).map(of_one_law));
+        let (shape, grading, seed, count) = (shape?, grading?, seed?, count?);
         let amount = count.map(|count| count.map(Amount::Count)).or(amount?)?;
-        return Some(LooseSource::Graded { region, grading, amount, seed });
+        return Some(LooseSource::Graded { shape, grading, amount, seed });
     }
-    Some(LooseSource::Cloud { region: region?, radius: radius?, dispersion: dispersion?, count: count?, seed: seed? })
+    let region = region(shape)?;
+    Some(LooseSource::Cloud { region, radius: radius?, dispersion: dispersion?, count: count?, seed: seed? })
 }
 
 /// How much of a graded cloud there is, where that is not a number of particles.
@@ -224,27 +232,34 @@ fn amount(table: &Table<'_>, counted: bool) -> Option<Option<Spanned<Amount>>> {
         return Some(None);
     }
     let share =
-        table.quantity("solid_fraction").check(|share| *share > 0.0 && *share <= 0.5, "above 0 and at most 0.5");
+        table.quantity("solid_fraction").check(|share| *share > 0.0 && *share <= 0.9, "above 0 and at most 0.9");
     let share = share.map(Amount::Fraction).spanned();
     Some(Some(share.or_if_absent(Spanned::new(Amount::Fraction(0.25), table.place_of("solid_fraction")))?))
 }
 
-fn region(table: &Table<'_>, kind: Kind) -> Option<Region> {
-    let start = point(table, "point").or_if_absent(Vec3::zeros());
+fn shape(table: &Table<'_>, kind: Kind) -> Option<CloudShape> {
+    let start = || point(table, "point").or_if_absent(Vec3::zeros());
     let length = |key: &'static str| table.quantity(key).positive().required();
-    Some(match kind {
+    Some(CloudShape::Region(match kind {
         Kind::Box => {
-            let size = point(table, "size").check(|size| size.min() > 0.0, "three lengths above 0").required();
+            let (start, size) = (start(), point(table, "size"));
+            let size = size.check(|size| size.min() > 0.0, "three lengths above 0").required();
             Region::Box { point: start?, size: size? }
         }
         Kind::Cylinder => {
+            let start = start();
             let axis = direction(table, "axis").or_if_absent(Vec3::x());
             let (long, wide) = (length("length"), length("radius"));
             Region::Cylinder { point: start?, axis: axis?, length: long?, radius: wide? }
         }
         Kind::Sphere => {
-            let wide = length("radius");
+            let (start, wide) = (start(), length("radius"));
             Region::Sphere { point: start?, radius: wide? }
         }
-    })
+        Kind::Group => return Some(CloudShape::Group(table.text("group").spanned().required()?)),
+        Kind::Stl => {
+            let (file, unit) = stl(table)?;
+            return Some(CloudShape::Stl { file, unit });
+        }
+    }))
 }

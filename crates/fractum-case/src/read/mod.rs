@@ -270,7 +270,7 @@ fn mesh(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<MeshSource>>
             PackingSource::Shape { shape, .. } if matches!(shape.value, BondedShape::Group(_))
         ),
         BodyKind::Rigid(rigid) => matches!(rigid.shape, RigidShape::Group { .. }),
-        BodyKind::Particles(_) => false,
+        BodyKind::Particles(loose) => loose.group().is_some(),
     };
     let bonded = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
     if bodies.is_none() && root.has("bodies") && !root.has("mesh") {

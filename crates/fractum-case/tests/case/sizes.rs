@@ -55,8 +55,8 @@ fn each_mistake_about_sizes_has_one_clear_message() {
         ),
         (
             "solid_fraction = 0.2",
-            "solid_fraction = 0.7",
-            "13:18: bodies[0].solid_fraction = 0.7; expected above 0 and at most 0.5",
+            "solid_fraction = 0.95",
+            "13:18: bodies[0].solid_fraction = 0.95; expected above 0 and at most 0.9",
         ),
         (
             "solid_fraction = 0.2",

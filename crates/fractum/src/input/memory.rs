@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 
 use fractum_case::build::{Replication, replication};
 use fractum_case::model::{
-    BodyKind, BondedBody, BondedShape, Case, LooseBody, LooseSource, PackingSource, ParticleSize, Region, SolidBody,
+    BodyKind, BondedBody, BondedShape, Case, CloudShape, LooseBody, LooseSource, PackingSource, ParticleSize, Region,
+    SolidBody,
 };
 use fractum_math::sphere_volume;
 use fractum_mesh::Mesh;
@@ -102,8 +103,10 @@ fn grains(body: &LooseBody, density: f64) -> f64 {
     if let LooseSource::Inlet { stream, .. } = &body.source {
         return stream.count(density);
     }
-    if let LooseSource::Graded { region, grading, amount, .. } = &body.source {
-        return graded_count(&region.value, grading, amount.value);
+    if let LooseSource::Graded { shape, grading, amount, .. } = &body.source {
+        // Only their surface or file tells the volume of other shapes.
+        let volume = if let CloudShape::Region(region) = &shape.value { region.volume() } else { 0.0 };
+        return graded_count(volume, grading, amount.value);
     }
     let LooseSource::Cloud { region, radius, dispersion, count, .. } = &body.source else { return 0.0 };
     // Of the cells of the box around the region those within it.
@@ -116,5 +119,5 @@ fn grains(body: &LooseBody, density: f64) -> f64 {
         Region::Sphere { radius, .. } => (fractum_math::Vec3::repeat(2.0 * radius), PI / 6.0),
     };
     let room = cloud_cells(&size, *radius, *dispersion).product() * share;
-    count.as_ref().map_or(room, |count| room.min(count.value as f64))
+    count.as_ref().map_or(room, |count| count.value as f64)
 }

@@ -89,7 +89,7 @@ impl Plan {
                             false => text,
                         };
                         let graded = match &loose.source {
-                            LooseSource::Graded { .. } => true,
+                            LooseSource::Graded { .. } => radius.iter().any(|r| *r != radius[0]),
                             LooseSource::Inlet { stream, .. } => matches!(stream.sizes, Sizes::Graded(_)),
                             _ => false,
                         };

@@ -29,7 +29,8 @@ fn group_of_other(body: &Body) -> Option<&str> {
             },
             PackingSource::Particles { .. } | PackingSource::File(_) => return None,
         },
-        _ => return None,
+        BodyKind::Particles(loose) => loose.group()?,
+        BodyKind::Solid(_) => return None,
     };
     Some(&group.value)
 }
