@@ -155,6 +155,9 @@ fn add_contact_forces_at_rest(scene: &mut Scene) {
     }
     scene.debris.add_forces_at_rest(&mut scene.solid);
     scene.optional.interfaces.add_forces_at_rest(&mut scene.solid);
+    if let Some(liquid) = &scene.optional.liquid {
+        liquid.push_walls(&mut scene.solid.force);
+    }
 }
 
 /// The forces of a state at rest that is no exact equilibrium.
