@@ -309,14 +309,16 @@ impl Plan {
             let words = if places == 1 { "injection" } else { "injections" };
             let beside = if scene.solid.is_plane() { "" } else { "; in space ten faces along a radius are too few" };
             let cells = liquid.cell_count();
-            if cells > 0 {
-                self.add("liquid", format!("{places} {words} into {cells} cells of interfaces{beside}"));
+            match places {
+                0 if cells > 0 => self.add("liquid", format!("in {cells} cells of interfaces{beside}")),
+                0 => {}
+                _ => self.add("liquid", format!("{places} {words} into {cells} cells of interfaces{beside}")),
             }
             for (index, hole) in own.iter().flat_map(|liquid| &liquid.holes).enumerate() {
                 let (volume, beside) = liquid.hole(index);
                 let met = match beside {
                     0 => "no interface takes liquid from it".to_owned(),
-                    1 => "an interface meets it in one place".to_owned(),
+                    1 => "interfaces meet it in one place".to_owned(),
                     places => format!("interfaces meet it in {places} places"),
                 };
                 self.add("liquid", format!("hole \"{}\" of {}: {met}", hole.on.label(), quantity(volume, "m^3")));

@@ -142,10 +142,13 @@ impl Liquid {
         });
         let injected_at: Vec<Vec<(u32, f64)>> = injected_at.collect();
         let (cells, points) = (network.cells.len(), network.points.len());
+        // Holes are full at the start.
+        let mut amount = vec![0.0; cells];
+        holes.iter().for_each(|hole| amount[hole.cell as usize] = hole.volume);
         let state = LiquidState {
             pressure: vec![0.0; cells],
-            amount: vec![0.0; cells],
-            room: vec![0.0; cells],
+            room: amount.clone(),
+            amount,
             wet_since: vec![f64::INFINITY; cells],
             leaked: vec![0.0; cells],
             aperture: vec![settings.aperture; points],

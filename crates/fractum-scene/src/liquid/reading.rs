@@ -57,7 +57,8 @@ impl Liquid {
     fn wet_area(&self, interfaces: &Interfaces, cell: usize) -> f64 {
         let points = self.network.cells[cell].points.iter().map(|&point| &self.network.points[point as usize]);
         let lets_in = |point: &&WetPoint| point.is_permeable || interfaces.state_of(point.at).residual < 1.0;
-        self.filled(cell) * points.filter(lets_in).map(|point| point.area).sum::<f64>()
+        // The sum over no point at all is -0.
+        self.filled(cell) * points.filter(lets_in).map(|point| point.area).sum::<f64>() + 0.0
     }
 
     /// Volume that was drawn and was not there, if there is any [m³].

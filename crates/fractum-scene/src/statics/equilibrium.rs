@@ -119,7 +119,7 @@ pub(super) fn no_equilibrium(scene: &Scene, follows: bool) -> StepError {
     } else {
         ""
     };
-    // Temperatures and liquid belong to times.
+    // Temperatures belong to times.
     let path = if follows || scene.heat().is_some() { "" } else { "follow it with control = \"path\", " };
     StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer, path }
 }

@@ -14,7 +14,7 @@ mod trial;
 use fractum_math::Vec3;
 
 use super::StaticSolver;
-use super::equilibrium::{accept_equilibrium, boundary_at, come_apart, no_equilibrium};
+use super::equilibrium::{accept_equilibrium, boundary_at, come_apart};
 use crate::error::StepError;
 use crate::liquid::LiquidState;
 use crate::liquid::network::WetPoint;
@@ -85,7 +85,7 @@ impl StaticSolver {
                 return self.accept_wet(scene, &field, state, present + dt);
             }
             if begins || self.pace.part <= SMALLEST_PART {
-                return Err(no_equilibrium(scene, true));
+                return Err(StepError::NoWetEquilibrium { step: scene.clock.step, time: scene.clock.time });
             }
             self.pace.part *= 0.5;
         }
