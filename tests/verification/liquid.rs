@@ -7,8 +7,9 @@ use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
 use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
-    CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, InterfaceSoftening, Interfaces,
-    Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of, with_liquid,
+    CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, InterfaceSoftening,
+    Interfaces, Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of,
+    with_liquid,
 };
 use fractum_tests::CONCRETE;
 
@@ -117,7 +118,10 @@ impl Pumped {
             compressibility: self.compressibility,
             leak_off: self.leak_off,
             holes: Vec::new(),
-            injections: vec![Injection { place: InjectionPlace::Nodes(nodes), drive: InjectionDrive::Rate(Arc::new(move |_, _| rate)) }],
+            injections: vec![Injection {
+                place: InjectionPlace::Nodes(nodes),
+                drive: InjectionDrive::Rate(Arc::new(move |_, _| rate)),
+            }],
         };
         let liquid = Liquid::new(&scene.solid, scene.interfaces(), settings);
         with_liquid(scene, liquid)

@@ -75,7 +75,8 @@ pub use interfaces::{
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
 pub use liquid::{
-    Injection, InjectionDrive, InjectionPlace, Liquid, LiquidHole, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState,
+    Injection, InjectionDrive, InjectionPlace, Liquid, LiquidHole, LiquidMeasure, LiquidReading, LiquidSettings,
+    LiquidState,
 };
 pub use measure::counts::{CountKind, Counts};
 pub use measure::crack_extent::CrackProbe;

@@ -93,7 +93,8 @@ fn a_borehole_breaks_down_as_the_strength_at_its_wall_is_met() {
 /// A sleeve presses on the wall alone: the line softens step by step under ever more pressure, and no liquid enters it.
 #[test]
 fn a_sealed_hole_gives_no_liquid_to_its_cracks() {
-    let place = borehole(&BOREHOLE.replace("duration/200", "duration/50").replace("storage = \"storage\"", "sealed = true"));
+    let place =
+        borehole(&BOREHOLE.replace("duration/200", "duration/50").replace("storage = \"storage\"", "sealed = true"));
     let one = run_with(&place, &["volume=3.5e-5 m^3"]);
     assert!(probe(&one, "pressure", "final") > 21e6 && probe(&one, "area", "final") == 0.0, "{}", one["probes"]);
 }
@@ -117,10 +118,7 @@ fn a_borehole_of_any_size_breaks_down_at_the_same_pressure() {
     let text = BOREHOLE.replace("duration/200", "duration/50");
     let of = |unit: &str, scale: f64| {
         let place = borehole(&text.replace("unit = \"m\"", &format!("unit = \"{unit}\"")));
-        let sets = [
-            format!("energy={} J/m^2", 32.0 * scale),
-            format!("volume={} m^3", 4e-5 * scale * scale),
-        ];
+        let sets = [format!("energy={} J/m^2", 32.0 * scale), format!("volume={} m^3", 4e-5 * scale * scale)];
         run_with(&place, &sets.each_ref().map(String::as_str));
         history(&place, "one", &["pressure", "opening"])
     };
@@ -139,11 +137,12 @@ fn a_borehole_of_any_size_breaks_down_at_the_same_pressure() {
 #[test]
 fn holes_that_cannot_be_meant_are_told() {
     let alone = BOREHOLE.replace("group = \"line\"", "group = \"gap\"");
-    let gap = "[[mesh.joints]]\nname = \"gap\"\ntable = [[\"0.5 m\", \"0 m\", \"0.7 m\", \"0 m\"]]\n";
+    let gap = "[[mesh.joints]]\nname = \"gap\"\ntable = [[\"1.5 m\", \"1 m\", \"1.5 m\", \"2 m\"]]\n";
     let place = borehole(&alone.replace("[materials.rock]", &format!("{gap}[materials.rock]")));
     let ended = place.fractum(&["check", "case.toml"]);
     assert!(ended.stdout.contains("[liquid-hole-alone]"), "{} {}", ended.stdout, ended.stderr);
-    let held = format!("{HOLE}\n").replace("where = \"x < 1e-4*inner\"\nfix = \"x\"", "where = \"x < 1e3*inner\"\nfix = \"xy\"");
+    let held = format!("{HOLE}\n")
+        .replace("where = \"x < 1e-4*inner\"\nfix = \"x\"", "where = \"x < 1e3*inner\"\nfix = \"xy\"");
     let place = ring(&held.replacen("[[supports]]\nwhere = \"y < 1e-4*inner\"\nfix = \"y\"\n", "", 1));
     let ended = place.fractum(&["check", "case.toml", "--set", "compressibility=0 1/Pa", "--set", "storage=0 m^3/Pa"]);
     assert!(ended.code == Some(1) && ended.stderr.contains("held all around"), "{} {}", ended.stdout, ended.stderr);

@@ -92,9 +92,10 @@ pub(super) fn with_liquid(
         let drive = if drive.by_pressure { InjectionDrive::Pressure(value) } else { InjectionDrive::Rate(value) };
         Injection { place, drive }
     };
-    let into_interfaces = liquid.injections.iter().map(|own| {
-        injection(InjectionPlace::Nodes(context.selected_nodes(&own.on, numbering)), &own.drive)
-    });
+    let into_interfaces = liquid
+        .injections
+        .iter()
+        .map(|own| injection(InjectionPlace::Nodes(context.selected_nodes(&own.on, numbering)), &own.drive));
     let mut injections: Vec<Injection> = into_interfaces.collect();
     let driven = liquid.holes.iter().enumerate().filter_map(|(hole, own)| Some((hole, own.drive.as_ref()?)));
     injections.extend(driven.map(|(hole, drive)| injection(InjectionPlace::Hole(hole), drive)));

@@ -25,7 +25,9 @@ pub(super) fn read(root: &Table<'_>) -> Option<Option<Liquid>> {
     let injections: Vec<Option<LiquidInjection>> = table.tables("injections").into_iter().map(injection).collect();
     if injections.is_empty() && holes.iter().flatten().all(|hole| hole.drive.is_none()) {
         let note = Diagnostic::error(&table.place_of("injections"), "is missing");
-        table.reader.note(note.expected("at least one [[liquid.injections]], or liquid.holes[] with a rate or pressure"));
+        table
+            .reader
+            .note(note.expected("at least one [[liquid.injections]], or liquid.holes[] with a rate or pressure"));
         return None;
     }
     table.finish("here");

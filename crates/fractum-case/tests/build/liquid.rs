@@ -71,7 +71,12 @@ fn a_hole_for_liquid_is_closed_and_fed() {
         (&format!("{CORNER}\npressure = \"1 MPa\""), PLANES, "", "exactly one of rate, pressure"),
         (&format!("{CORNER}\nstemmed = true"), PLANES, "", "stemmed in the plane"),
         (&format!("{CORNER}\n[[liquid.holes]]\n{CORNER}"), PLANES, "", "shares facets with the hole before it"),
-        (&format!("{CORNER}\n[[liquid.injections]]\ngroup = \"x+\"\nrate = \"1 m^3/s\""), PLANES, "", "none of its nodes is on an interface"),
+        (
+            &format!("{CORNER}\n[[liquid.injections]]\ngroup = \"x+\"\nrate = \"1 m^3/s\""),
+            PLANES,
+            "",
+            "none of its nodes is on an interface",
+        ),
     ] {
         let error = build(hole, symmetry, probe).unwrap_err();
         assert!(error.contains("case.toml:") && error.contains(says), "{hole} {symmetry} {probe}: {error}");

@@ -126,8 +126,7 @@ impl Liquid {
         let joints = interfaces.joints();
         let mut network = Network::new(solid, interfaces, &joints, &settings.interfaces, settings.aperture > 0.0);
         let holes = (network.cells.len() as u32..).zip(&settings.holes);
-        let holes: Vec<Hole> =
-            holes.map(|(cell, own)| Hole::new(solid, interfaces, &network, cell, own)).collect();
+        let holes: Vec<Hole> = holes.map(|(cell, own)| Hole::new(solid, interfaces, &network, cell, own)).collect();
         for (hole, own) in holes.iter().zip(&settings.holes) {
             network.cells.push(Cell { place: hole.middle(solid, &own.ends), ..Cell::default() });
             network.slits_of.push(Vec::new());

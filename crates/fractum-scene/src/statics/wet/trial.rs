@@ -163,8 +163,7 @@ impl Trial {
         }
         for hole in &own.holes {
             for &cell in &hole.cells {
-                let may_enter =
-                    || own.network.slits_of[cell as usize].iter().any(|&slit| self.is_open[slit as usize]);
+                let may_enter = || own.network.slits_of[cell as usize].iter().any(|&slit| self.is_open[slit as usize]);
                 if self.hole_of[cell as usize] == NONE && (self.is_wet(cell) || may_enter()) {
                     self.hole_of[cell as usize] = hole.cell;
                     self.play.push(cell);
