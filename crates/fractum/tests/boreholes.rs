@@ -72,6 +72,23 @@ fn pressure_in_a_hole_follows_from_liquid_lines_and_wall() {
     }
 }
 
+/// Steps end where the rate jumps or has a kink: each puts in what the rate says.
+#[test]
+fn what_is_put_in_is_the_rate_over_time() {
+    for (rate, volume) in [
+        ("if(t < 5 s, put_in/5 s, 0 m^3/s)", 1e-8),
+        ("put_in/10 s*t/10 s", 0.5e-8),
+        ("if(t < 5 s, put_in/5 s, -put_in/10 s)", 0.5e-8),
+    ] {
+        let place =
+            ring(&HOLE.replace("rate = \"put_in/10 s\"", &format!("rate = \"{rate}\"")).replace("\"1 s\"", "\"4 s\""));
+        let jumping = run_with(&place, &[]);
+        let steady = run_with(&ring(HOLE), &[&format!("put_in={volume} m^3")]);
+        let error = probe(&jumping, "pressure", "final") / probe(&steady, "pressure", "final") - 1.0;
+        assert!(error.abs() < 1e-6, "{rate}: {error}");
+    }
+}
+
 /// The stress at the wall of a circular hole meets the strength at 3 s_min - s_max + f_t, whatever the liquid; then the pressure falls.
 #[test]
 fn a_borehole_breaks_down_as_the_strength_at_its_wall_is_met() {

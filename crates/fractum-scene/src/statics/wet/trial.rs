@@ -113,7 +113,10 @@ impl Trial {
             for &(cell, share) in cells {
                 let place = &own.network.cells[cell as usize].place;
                 match &injection.drive {
-                    InjectionDrive::Rate(rate) => self.comes[cell as usize] += rate(step.time, place) * share * step.dt,
+                    // A step may end just behind an instant at which the rate jumps.
+                    InjectionDrive::Rate(rate) => {
+                        self.comes[cell as usize] += rate(step.time - 0.5 * step.dt, place) * share * step.dt
+                    }
                     InjectionDrive::Pressure(value) => {
                         self.prescribed[cell as usize] = value(step.time, place).max(0.0)
                     }
