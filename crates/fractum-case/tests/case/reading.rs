@@ -140,7 +140,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let push_and_gas = ["N", "Pa"];
     let pieces = ["N", "m^3", "m/s", "m"];
     let cracks = ["m^2", "m", "m/s", "1", "1", "m/s"];
-    let mode_gauges_heat_moment_liquid_box_and_work = ["1", "1", "Pa", "K", "J", "1", "N m", "m", "Pa", "J"];
+    let mode_gauges_heat_moment_liquid_box_and_work = ["1", "1", "Pa", "K", "J", "1", "N m", "m", "Pa", "Pa", "J"];
     let all = [
         &expected[..],
         &about_an_axis,
