@@ -85,6 +85,7 @@ UNSTRUCTURED = {
     "gas-blast-plane/coarse": ("gas-blast-plane/plate.geo", {"h": 0.0012, "far": 0.0022}, False),
     "spall-plane/coarse": ("spall-plane/bar.geo", {"h": 0.0005}, False),
     "spall-plane/fine": ("spall-plane/bar.geo", {"h": 0.00035}, True),
+    "borehole-plane/half": ("borehole-plane/half.geo", {}, False),
     "blast-plane/shale": ("blast-plane/hole.geo", {"h": 0.02, "band": 0.06, "L": 30}, False),
     "blast-plane/granite": ("blast-plane/disc.geo", {"h": 0.0006, "far": 0.0011, "length": 0}, False),
     "blast-plane/bench": ("blast-plane/bench.geo", {"h": 0.06}, False),

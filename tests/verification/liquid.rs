@@ -7,8 +7,9 @@ use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
 use fractum_scene::statics::StaticSolver;
 use fractum_scene::{
-    CubicLaw, EnergyKind, Injection, InjectionDrive, InterfaceKind, InterfaceLaw, InterfaceSoftening, Interfaces,
-    Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of, with_liquid,
+    CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, InterfaceSoftening,
+    Interfaces, Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of,
+    with_liquid,
 };
 use fractum_tests::CONCRETE;
 
@@ -116,7 +117,11 @@ impl Pumped {
             aperture: 0.0,
             compressibility: self.compressibility,
             leak_off: self.leak_off,
-            injections: vec![Injection { nodes, drive: InjectionDrive::Rate(Arc::new(move |_, _| rate)) }],
+            holes: Vec::new(),
+            injections: vec![Injection {
+                place: InjectionPlace::Nodes(nodes),
+                drive: InjectionDrive::Rate(Arc::new(move |_, _| rate)),
+            }],
         };
         let liquid = Liquid::new(&scene.solid, scene.interfaces(), settings);
         with_liquid(scene, liquid)
@@ -145,10 +150,10 @@ impl Pumped {
         let liquid = liquid_of(scene).unwrap();
         let area = match self.law.is_bonded() {
             true => lost(scene.interfaces()),
-            false => liquid.measure(scene.interfaces(), LiquidMeasure::WettedArea),
+            false => liquid.measure(scene.interfaces(), LiquidMeasure::WettedArea, None),
         };
         let length = if self.is_disc { (area / self.part() / PI).sqrt() } else { area };
-        let of = |measure| liquid.measure(scene.interfaces(), measure);
+        let of = |measure| liquid.measure(scene.interfaces(), measure, None);
         [of(LiquidMeasure::Aperture), of(LiquidMeasure::Pressure) - self.stress, length]
     }
 
@@ -322,7 +327,7 @@ fn walls_that_take_nearly_all_set_the_length() {
     let (scene, seen) = own.run();
     let exact = own.rate * own.end.sqrt() / (2.0 * PI * leak_off);
     let liquid = liquid_of(&scene).unwrap();
-    let of = |measure| liquid.measure(scene.interfaces(), measure);
+    let of = |measure| liquid.measure(scene.interfaces(), measure, None);
     let [injected, volume, leaked] = [LiquidMeasure::Injected, LiquidMeasure::Volume, LiquidMeasure::Leaked].map(of);
     println!("{} of {exact}, leaked {} of what came", seen[1][2], leaked / injected);
     assert!((seen[1][2] / exact - 1.0).abs() < 0.08 && leaked > 0.97 * injected, "{} of {exact}", seen[1][2]);
@@ -344,7 +349,7 @@ fn a_given_pressure_draws_its_rate() {
     while !solver.is_finished(&scene) {
         solver.step(&mut scene).unwrap();
     }
-    let of = |measure| liquid_of(&scene).unwrap().measure(scene.interfaces(), measure);
+    let of = |measure| liquid_of(&scene).unwrap().measure(scene.interfaces(), measure, None);
     assert!((of(LiquidMeasure::Pressure) / 30e6 - 1.0).abs() < 1e-12);
     assert!(of(LiquidMeasure::Rate) > 0.0 && of(LiquidMeasure::Front) > 0.09, "{:e}", of(LiquidMeasure::Front));
     assert!((of(LiquidMeasure::Volume) / of(LiquidMeasure::Injected) - 1.0).abs() < 1e-9);

@@ -72,6 +72,8 @@ impl Dimension {
     pub const VISCOSITY: Self = dimension(1, -1, -1);
     /// Compressibility [1/Pa].
     pub const COMPRESSIBILITY: Self = dimension(-1, 1, 2);
+    /// Volume per pressure [m³/Pa].
+    pub const STORAGE: Self = dimension(-1, 4, 2);
     /// Volume per time [m³/s].
     pub const VOLUME_RATE: Self = dimension(0, 3, -1);
     /// Length per root of time [m/√s].
@@ -195,6 +197,7 @@ static KNOWN: &[Known] = &[
     known(Dimension::EXPANSION, "1/K", "a coefficient of thermal expansion", "1e-5 1/K"),
     known(Dimension::SPECIFIC_VOLUME, "m^3/kg", "a volume per mass", "1 L/kg"),
     known(Dimension::COMPRESSIBILITY, "1/Pa", "a compressibility", "4.5e-10 1/Pa"),
+    known(Dimension::STORAGE, "m^3/Pa", "a volume per pressure", "0.2 mL/MPa"),
     known(Dimension::VOLUME_RATE, "m^3/s", "a volume per time", "10 L/s"),
     known(Dimension::LEAK_OFF, "m/s^0.5", "a leak-off", "1e-5 m/s^0.5"),
     known(Dimension::VISCOSITY, "Pa s", "a viscosity", "5e-5 Pa s"),

@@ -141,6 +141,8 @@ codes! {
     InterfaceSlip = "interface-slip",
     /// Liquid that is everywhere in its interfaces.
     LiquidAtEnd = "liquid-at-end",
+    /// No interface meets a hole that holds liquid.
+    LiquidHoleAlone = "liquid-hole-alone",
     /// More liquid was drawn than there was.
     LiquidOverdrawn = "liquid-overdrawn",
     /// A rate at which an inlet has no room for its particles.

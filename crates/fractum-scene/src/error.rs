@@ -177,6 +177,17 @@ pub enum StepError {
         /// That the run may follow its path, with what parts it from the rest; empty where it does, or cannot.
         path: &'static str,
     },
+    /// No equilibrium of solids and liquid was found.
+    #[error(
+        "step {step}, t = {time:.6e} s: no equilibrium of solids and liquid found; a crack that opens far ahead of its liquid may have none: let more stress press \
+         its sides together ([in_situ] or loads), or end the run before with solver.stop_when"
+    )]
+    NoWetEquilibrium {
+        /// Step number.
+        step: u64,
+        /// Time [s].
+        time: f64,
+    },
     /// The equilibrium of a bonded body was not found.
     #[error(
         "step {step}, t = {time:.6e} s: no equilibrium of the bonds found: {error}; raise solver.tolerance, or run it with \

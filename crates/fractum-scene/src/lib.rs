@@ -74,7 +74,10 @@ pub use interfaces::{
     FaceReading, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, InterfacesState, OpenedCrack,
 };
 pub use ledger::{EnergyKind, EnergyProbe, EnergyRole, Ledger};
-pub use liquid::{Injection, InjectionDrive, Liquid, LiquidMeasure, LiquidReading, LiquidSettings, LiquidState};
+pub use liquid::{
+    Injection, InjectionDrive, InjectionPlace, Liquid, LiquidHole, LiquidMeasure, LiquidReading, LiquidSettings,
+    LiquidState,
+};
 pub use measure::counts::{CountKind, Counts};
 pub use measure::crack_extent::CrackProbe;
 pub use measure::crack_measure::{CrackMeasure, InsideCracks};

@@ -304,10 +304,25 @@ impl Plan {
             self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
         }
         if let Some(liquid) = liquid_of(scene) {
-            let places = case.flows.liquid.as_ref().map_or(0, |liquid| liquid.injections.len());
+            let own = case.flows.liquid.as_ref();
+            let places = own.map_or(0, |liquid| liquid.injections.len());
             let words = if places == 1 { "injection" } else { "injections" };
             let beside = if scene.solid.is_plane() { "" } else { "; in space ten faces along a radius are too few" };
-            self.add("liquid", format!("{places} {words} into {} cells of interfaces{beside}", liquid.cell_count()));
+            let cells = liquid.cell_count();
+            match places {
+                0 if cells > 0 => self.add("liquid", format!("in {cells} cells of interfaces{beside}")),
+                0 => {}
+                _ => self.add("liquid", format!("{places} {words} into {cells} cells of interfaces{beside}")),
+            }
+            for (index, hole) in own.iter().flat_map(|liquid| &liquid.holes).enumerate() {
+                let (volume, beside) = liquid.hole(index);
+                let met = match beside {
+                    0 => "no interface takes liquid from it".to_owned(),
+                    1 => "interfaces meet it in one place".to_owned(),
+                    places => format!("interfaces meet it in {places} places"),
+                };
+                self.add("liquid", format!("hole \"{}\" of {}: {met}", hole.on.label(), quantity(volume, "m^3")));
+            }
         }
         if !matches!(case.solver.kind, SolverKind::Heat | SolverKind::Modes) {
             self.describe_what_moves(case, scene);

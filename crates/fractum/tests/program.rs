@@ -7,6 +7,7 @@ mod adhesion;
 mod axisymmetric;
 mod bonded;
 mod book;
+mod boreholes;
 mod breaking;
 mod clumps;
 mod confined;

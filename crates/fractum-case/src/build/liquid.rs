@@ -1,10 +1,13 @@
-//! Liquid in interfaces: what it cannot go with, and its place in the scene.
+//! Liquid in interfaces and holes: what it cannot go with, and its place in the scene.
 
-use fractum_scene::{Injection, InjectionDrive, Liquid, LiquidSettings, Scene};
+use fractum_output::warning::Code;
+use fractum_scene::{Injection, InjectionDrive, InjectionPlace, Liquid, LiquidHole, LiquidSettings, Scene};
 
 use super::bodies::Numbering;
+use super::conditions::Surface;
+use super::holes::Holes;
 use super::{Context, function};
-use crate::model::{self, BodyKind, Control, SolverKind};
+use crate::model::{self, BodyKind, Control, LiquidDrive, SolverKind};
 use crate::{Diagnostic, nearest};
 
 /// What does not go together with liquid.
@@ -12,8 +15,9 @@ pub(super) fn check(context: &mut Context<'_>) {
     let case = context.case;
     let Some(liquid) = &case.flows.liquid else { return };
     let place = &liquid.place;
-    if case.interfaces.is_empty() {
-        context.error(place, "in a case without interfaces", "[[interfaces]] that it flows in");
+    if case.interfaces.is_empty() && liquid.holes.is_empty() {
+        let expected = "[[interfaces]] that it flows in, or [[liquid.holes]] that hold it";
+        context.error(place, "in a case without interfaces", expected);
         return;
     }
     if case.solver.kind != SolverKind::Static {
@@ -67,7 +71,12 @@ fn check_names(context: &mut Context<'_>, liquid: &model::Liquid) {
 }
 
 /// The scene with the liquid of its case.
-pub(super) fn with_liquid(context: &mut Context<'_>, scene: Scene, numbering: &Numbering) -> Scene {
+pub(super) fn with_liquid(
+    context: &mut Context<'_>,
+    scene: Scene,
+    (numbering, surface): (&Numbering, &Surface<'_>),
+    warnings: &mut Vec<Diagnostic>,
+) -> Scene {
     let Some(liquid) = &context.case.flows.liquid else { return scene };
     if scene.solid.has_damage() {
         let remedy = "elastic materials: cracks run along interfaces";
@@ -77,27 +86,76 @@ pub(super) fn with_liquid(context: &mut Context<'_>, scene: Scene, numbering: &N
     let kinds = (0u32..).zip(&context.case.interfaces);
     let kinds = kinds.filter(|(_, own)| liquid.flows_in(&own.name)).map(|(kind, _)| kind);
     let kinds: Vec<u32> = kinds.collect();
-    let injections = liquid.injections.iter().map(|injection| {
-        let value = function(&injection.value.value);
-        let drive = if injection.by_pressure { InjectionDrive::Pressure(value) } else { InjectionDrive::Rate(value) };
-        Injection { nodes: context.selected_nodes(&injection.on, numbering), drive }
-    });
+    let Some(holes) = holes(context, &scene, liquid, (numbering, surface)) else { return scene };
+    let injection = |place: InjectionPlace, drive: &LiquidDrive| {
+        let value = function(&drive.value.value);
+        let drive = if drive.by_pressure { InjectionDrive::Pressure(value) } else { InjectionDrive::Rate(value) };
+        Injection { place, drive }
+    };
+    let into_interfaces = liquid
+        .injections
+        .iter()
+        .map(|own| injection(InjectionPlace::Nodes(context.selected_nodes(&own.on, numbering)), &own.drive));
+    let mut injections: Vec<Injection> = into_interfaces.collect();
+    let driven = liquid.holes.iter().enumerate().filter_map(|(hole, own)| Some((hole, own.drive.as_ref()?)));
+    injections.extend(driven.map(|(hole, drive)| injection(InjectionPlace::Hole(hole), drive)));
     let settings = LiquidSettings {
         interfaces: kinds,
         law: liquid.law,
         aperture: liquid.aperture,
         compressibility: liquid.compressibility,
         leak_off: liquid.leak_off,
-        injections: injections.collect(),
+        holes,
+        injections,
     };
     let built = Liquid::new(&scene.solid, scene.interfaces(), settings);
     for (index, injection) in liquid.injections.iter().enumerate() {
+        let place = injection.on.place().unwrap_or(&liquid.place).clone();
+        let label = injection.on.label();
         if built.cells_of_injection(index) == 0 {
-            let found =
-                format!("= \"{}\": none of its nodes is on an interface that liquid flows in", injection.on.label());
-            let place = injection.on.place().unwrap_or(&liquid.place).clone();
+            let found = format!("= \"{label}\": none of its nodes is on an interface that liquid flows in");
             context.error(&place, found, "nodes inside of such an interface; its tips have no room");
+        } else if built.hole_at_injection(index).is_some() {
+            let found = format!("= \"{label}\": has nodes on the wall of a hole, whose pressure they share");
+            context.error(&place, found, "the rate or pressure of liquid.holes[], or nodes away from it");
+        }
+    }
+    for (index, hole) in liquid.holes.iter().enumerate() {
+        let (_, beside) = built.hole(index);
+        if beside == 0 && !hole.is_sealed && !context.case.interfaces.is_empty() {
+            let place = hole.on.place().unwrap_or(&liquid.place);
+            let found = format!("= \"{}\": no interface that liquid flows in meets the hole", hole.on.label());
+            let note = Diagnostic::warning(Code::LiquidHoleAlone, place, found);
+            warnings.push(note.remedy("let one end on its wall, or set sealed = true"));
         }
     }
     fractum_scene::with_liquid(scene, built)
+}
+
+/// Holes on the groups of the mesh; none where one is wrong.
+fn holes(
+    context: &mut Context<'_>,
+    scene: &Scene,
+    liquid: &model::Liquid,
+    (numbering, surface): (&Numbering, &Surface<'_>),
+) -> Option<Vec<LiquidHole>> {
+    let bits = scene.supports().held();
+    let held = |node: u32, axis: usize| bits.get(node as usize).is_some_and(|own| own >> axis & 1 == 1);
+    let of_mesh = Holes::new(context, numbering, "liquid", &liquid.symmetry, &scene.solid, &held);
+    let mut holes: Vec<LiquidHole> = Vec::new();
+    for hole in &liquid.holes {
+        let facets = context.selected_facets(&hole.on, numbering, surface);
+        let others: Vec<&[[u32; 3]]> = holes.iter().map(|other| &other.facets[..]).collect();
+        let ends = of_mesh.ends(context, (&hole.on, hole.stemmed), &facets, &others);
+        let axes = if scene.solid.is_plane() { 2 } else { 3 };
+        let is_held = facets.iter().flatten().all(|&node| (0..axes).all(|axis| held(node, axis)));
+        if is_held && !facets.is_empty() && hole.storage == 0.0 && liquid.compressibility == 0.0 {
+            let place = hole.on.place().unwrap_or(&liquid.place).clone();
+            let found = format!("= \"{}\": its wall is held all around, and nothing in it gives way", hole.on.label());
+            context.error(&place, found, "liquid.compressibility or storage above 0, or a wall that may move");
+        }
+        let (storage, is_sealed) = (hole.storage, hole.is_sealed);
+        holes.push(LiquidHole { facets, ends: ends.unwrap_or_default(), storage, is_sealed });
+    }
+    context.diagnostics.is_empty().then_some(holes)
 }

@@ -16,6 +16,7 @@ mod excavation;
 mod gas;
 mod gauges;
 mod heat;
+mod holes;
 mod idle_doubts;
 mod in_situ;
 mod in_situ_doubts;
@@ -259,7 +260,7 @@ impl<'a> Context<'a> {
             .with_surface_supports(surface_supports);
         let scene = with_inlets(scene, std::mem::take(&mut self.inlets));
         let scene = interfaces::with_interfaces(self, scene, &parts, &numbering);
-        let scene = liquid::with_liquid(self, scene, &numbering);
+        let scene = liquid::with_liquid(self, scene, (&numbering, &surface), &mut warnings);
         warnings.extend(interfaces::doubts(self, &scene));
         let tied: Vec<u32> = if breaks { ties.attachments.iter().map(|a| a.particle).collect() } else { Vec::new() };
         let scene = contacts::with_contacts(

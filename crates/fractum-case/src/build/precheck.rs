@@ -252,8 +252,8 @@ fn check_time_functions(context: &mut Context<'_>) {
     }
     let pressures = case.interfaces.iter().filter_map(|interface| interface.pressure.as_ref());
     functions.extend(pressures.map(|(function, _)| (function, None)));
-    let injections = case.flows.liquid.iter().flat_map(|liquid| &liquid.injections);
-    functions.extend(injections.map(|own| (&own.value, Some(&own.on))));
+    let drives = case.flows.liquid.iter().flat_map(|liquid| liquid.drives());
+    functions.extend(drives.map(|(own, on)| (&own.value, Some(on))));
     functions.extend(case.periodic.iter().flat_map(|own| own.functions()).map(|function| (function, None)));
     for (function, on) in functions {
         check_function(context, &function.value, function, on);

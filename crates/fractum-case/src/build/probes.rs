@@ -8,7 +8,7 @@ use super::bodies::{Numbering, Part};
 use super::conditions::Surface;
 use super::use_in_words;
 use crate::measure::{Names, Scenery};
-use crate::model::{GroupUse, Selection};
+use crate::model::{Flows, GroupUse, Selection};
 use crate::{Place, Spanned};
 
 /// What names of the case stand for while probes are made.
@@ -56,8 +56,11 @@ impl Names for NamesOfScene<'_, '_> {
     }
 
     fn hole(&self, group: &str) -> Option<usize> {
-        let holes = self.context.case.flows.gas.as_ref().map_or(&[][..], |gas| &gas.holes);
-        holes.iter().position(|hole| hole.on.group_name() == group)
+        // Gas and liquid do not act together.
+        let Flows { gas, liquid, .. } = &self.context.case.flows;
+        let of_liquid = liquid.iter().flat_map(|liquid| &liquid.holes).map(|hole| &hole.on);
+        let mut holes = gas.iter().flat_map(|gas| &gas.holes).map(|hole| &hole.on).chain(of_liquid);
+        holes.position(|on| on.group_name() == group)
     }
 
     fn vibrations(&self) -> usize {

@@ -29,7 +29,7 @@ pub(super) fn turns(context: &Context<'_>) -> Vec<f64> {
     let positions = positions(context);
     let flows = &context.case.flows;
     let heat = flows.heat.iter().flat_map(|heat| &heat.conditions).map(|condition| &condition.kind.function().value);
-    let liquid = flows.liquid.iter().flat_map(|liquid| &liquid.injections).map(|injection| &injection.value.value);
+    let liquid = flows.liquid.iter().flat_map(|liquid| liquid.drives()).map(|(drive, _)| &drive.value.value);
     let mut found = Vec::new();
     for drive in drives(context).into_iter().chain(heat.chain(liquid).map(Drive::Value)) {
         let (Drive::Value(function) | Drive::Rate(function)) = drive;

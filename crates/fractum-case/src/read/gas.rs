@@ -52,7 +52,8 @@ pub(super) fn read(root: &Table<'_>, solver: Option<&Solver>, staged: bool) -> O
     }))
 }
 
-fn symmetry(table: &Table<'_>) -> Option<[Option<Spanned<f64>>; 3]> {
+/// Planes of symmetry at which holes may end.
+pub(super) fn symmetry(table: &Table<'_>) -> Option<[Option<Spanned<f64>>; 3]> {
     let Some(planes) = table.table("symmetry") else { return Some([None, None, None]) };
     let places = ["x", "y", "z"].map(|axis| optional(&planes, axis, |axis| planes.quantity(axis).spanned().required()));
     planes.finish("here");

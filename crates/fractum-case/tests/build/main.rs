@@ -9,6 +9,7 @@ mod detonation;
 mod doubts;
 mod gas;
 mod heat;
+mod liquid;
 mod network;
 mod notches;
 mod refine;

@@ -205,6 +205,7 @@ fn documented_defaults_are_the_defaults() {
                 .replace("loads[].in_cracks", "loads[2].in_cracks")
                 .replace("loads[].scatter", "loads[5].scatter")
                 .replace("gas.holes[]", "gas.holes[0]")
+                .replace("liquid.holes[]", "liquid.holes[0]")
                 .replace("interfaces[].residual", "interfaces[1].residual")
                 .replace("interfaces[].dilation_angle", "interfaces[1].dilation_angle")
                 .replace("interfaces[]", "interfaces[0]")

@@ -140,7 +140,7 @@ fn a_case_with_every_key_is_read_into_si() {
     let push_and_gas = ["N", "Pa"];
     let pieces = ["N", "m^3", "m/s", "m"];
     let cracks = ["m^2", "m", "m/s", "1", "1", "m/s"];
-    let mode_gauges_heat_moment_liquid_box_and_work = ["1", "1", "Pa", "K", "J", "1", "N m", "m", "Pa", "J"];
+    let mode_gauges_heat_moment_liquid_box_and_work = ["1", "1", "Pa", "K", "J", "1", "N m", "m", "Pa", "Pa", "J"];
     let all = [
         &expected[..],
         &about_an_axis,
@@ -163,7 +163,7 @@ fn a_case_with_every_key_is_read_into_si() {
 
     assert_eq!(case.expect[0].bound, Bound::Near { value: 1e4, tolerance: 500.0, relative: Some(0.05) });
     assert_eq!(case.expect[2].bound, Bound::Between { above: Some(1e-4), below: Some(2e-3) });
-    assert_eq!(case.groups_used().len(), 4 + 5 + 6 + 1 + 8 + 2 + 3 + 1 + 3 + 5 + 1);
+    assert_eq!(case.groups_used().len(), 4 + 5 + 6 + 1 + 8 + 2 + 3 + 1 + 3 + 5 + 1 + 2);
 }
 
 #[test]

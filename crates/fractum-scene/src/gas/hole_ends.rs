@@ -87,7 +87,7 @@ impl HoleEnds {
     }
 
     /// A place whose moment of the facets leaves out what the planes of symmetry would add.
-    pub(super) fn base(&self, place: Vec3) -> Vec3 {
+    pub(crate) fn base(&self, place: Vec3) -> Vec3 {
         self.planes.project(place)
     }
 

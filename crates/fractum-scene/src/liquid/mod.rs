@@ -1,9 +1,11 @@
-//! Liquid in interfaces: injection, flow by the cubic law, storage, leak-off, and the front up to which a crack is filled.
+//! Liquid in interfaces and in holes: injection, flow by the cubic law, storage, leak-off, and the front up to which a crack is filled.
 //!
 //! Every place at which nodes are doubled is a cell with a pressure. Its room is that between the sides of the interfaces there; it is full, or partly filled and
 //! without pressure: so the front and the dry part ahead of it follow from p ≥ 0, V - m ≥ 0 and p (V - m) = 0. Along every face liquid flows by the mean
-//! aperture of its corners. The equations are solved together with the equilibrium of the solids, implicit in the pressures (`statics/wet`).
+//! aperture of its corners. A hole is a cell too, whose pressure those on its wall have. The equations are solved together with the equilibrium of the solids,
+//! implicit in the pressures (`statics/wet`).
 
+mod holes;
 pub(crate) mod network;
 mod reading;
 
@@ -11,12 +13,15 @@ use std::fmt;
 
 use fractum_fem::Solid;
 use fractum_kernels::liquid::CubicLaw;
+use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::interfaces::Interfaces;
 use crate::time_function::TimeFunction;
-use network::Network;
+use network::{Cell, Network};
 
+pub(crate) use holes::Hole;
+pub use holes::LiquidHole;
 pub use reading::{LiquidMeasure, LiquidReading};
 
 /// What a liquid is, and where it comes in.
@@ -32,6 +37,8 @@ pub struct LiquidSettings {
     pub compressibility: f64,
     /// Carter's coefficient of one wall [m/√s].
     pub leak_off: f64,
+    /// Holes that hold it.
+    pub holes: Vec<LiquidHole>,
     /// Where it comes in.
     pub injections: Vec<Injection>,
 }
@@ -39,10 +46,19 @@ pub struct LiquidSettings {
 /// A place at which liquid is put in.
 #[derive(Clone)]
 pub struct Injection {
-    /// Nodes there, ascending; those that are on no interface count for nothing.
-    pub nodes: Vec<u32>,
+    /// Where.
+    pub place: InjectionPlace,
     /// By a rate, or by a pressure.
     pub drive: InjectionDrive,
+}
+
+/// Where liquid is put in.
+#[derive(Clone, Debug)]
+pub enum InjectionPlace {
+    /// Cells at nodes, ascending; those that are on no interface count for nothing.
+    Nodes(Vec<u32>),
+    /// A hole, by its number.
+    Hole(usize),
 }
 
 /// What drives an injection.
@@ -57,7 +73,7 @@ pub enum InjectionDrive {
 impl fmt::Debug for Injection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let by = if matches!(self.drive, InjectionDrive::Rate(_)) { "rate" } else { "pressure" };
-        write!(f, "Injection({} nodes, by {by})", self.nodes.len())
+        write!(f, "Injection({:?}, by {by})", self.place)
     }
 }
 
@@ -66,6 +82,8 @@ impl fmt::Debug for Injection {
 pub struct Liquid {
     pub(crate) settings: LiquidSettings,
     pub(crate) network: Network,
+    /// Holes, whose cells are behind those of the network.
+    pub(crate) holes: Vec<Hole>,
     /// Cells of each injection with their shares.
     pub(crate) injected_at: Vec<Vec<(u32, f64)>>,
     pub(crate) state: LiquidState,
@@ -106,18 +124,30 @@ impl Liquid {
     /// Liquid in the interfaces of a solid, none of which is there yet.
     pub fn new(solid: &Solid, interfaces: &Interfaces, settings: LiquidSettings) -> Self {
         let joints = interfaces.joints();
-        let network = Network::new(solid, interfaces, &joints, &settings.interfaces, settings.aperture > 0.0);
-        let injected_at = settings.injections.iter().map(|injection| {
-            let cells = network.cells_at(interfaces, &injection.nodes);
-            let area: f64 = cells.iter().map(|&cell| network.cells[cell as usize].area).sum();
-            cells.into_iter().map(|cell| (cell, network.cells[cell as usize].area / area)).collect()
+        let mut network = Network::new(solid, interfaces, &joints, &settings.interfaces, settings.aperture > 0.0);
+        let holes = (network.cells.len() as u32..).zip(&settings.holes);
+        let holes: Vec<Hole> = holes.map(|(cell, own)| Hole::new(solid, interfaces, &network, cell, own)).collect();
+        for (hole, own) in holes.iter().zip(&settings.holes) {
+            network.cells.push(Cell { place: hole.middle(solid, &own.ends), ..Cell::default() });
+            network.slits_of.push(Vec::new());
+        }
+        let injected_at = settings.injections.iter().map(|injection| match &injection.place {
+            InjectionPlace::Hole(hole) => vec![(holes[*hole].cell, 1.0)],
+            InjectionPlace::Nodes(nodes) => {
+                let cells = network.cells_at(interfaces, nodes);
+                let area: f64 = cells.iter().map(|&cell| network.cells[cell as usize].area).sum();
+                cells.into_iter().map(|cell| (cell, network.cells[cell as usize].area / area)).collect()
+            }
         });
         let injected_at: Vec<Vec<(u32, f64)>> = injected_at.collect();
         let (cells, points) = (network.cells.len(), network.points.len());
+        // Holes are full at the start.
+        let mut amount = vec![0.0; cells];
+        holes.iter().for_each(|hole| amount[hole.cell as usize] = hole.volume);
         let state = LiquidState {
             pressure: vec![0.0; cells],
-            amount: vec![0.0; cells],
-            room: vec![0.0; cells],
+            room: amount.clone(),
+            amount,
             wet_since: vec![f64::INFINITY; cells],
             leaked: vec![0.0; cells],
             aperture: vec![settings.aperture; points],
@@ -125,7 +155,7 @@ impl Liquid {
             rates: vec![0.0; injected_at.len()],
             ..LiquidState::default()
         };
-        Liquid { settings, network, injected_at, state }
+        Liquid { settings, network, holes, injected_at, state }
     }
 
     /// What it is and where it comes in.
@@ -133,14 +163,36 @@ impl Liquid {
         &self.settings
     }
 
-    /// Number of its cells.
+    /// Number of its cells in interfaces.
     pub fn cell_count(&self) -> usize {
-        self.network.cells.len()
+        self.network.cells.len() - self.holes.len()
     }
 
     /// Number of cells that an injection reaches.
     pub fn cells_of_injection(&self, injection: usize) -> usize {
         self.injected_at[injection].len()
+    }
+
+    /// A hole on whose wall a cell lies that an injection into interfaces reaches.
+    pub fn hole_at_injection(&self, injection: usize) -> Option<usize> {
+        let at = &self.injected_at[injection];
+        self.holes.iter().position(|hole| at.iter().any(|(cell, _)| hole.cells.binary_search(cell).is_ok()))
+    }
+
+    /// Volume of a hole without load [m³], and the number of cells of interfaces on its wall that take liquid from it.
+    pub fn hole(&self, hole: usize) -> (f64, usize) {
+        (self.holes[hole].volume, self.holes[hole].cells.len())
+    }
+
+    /// Adds the forces of the liquid on the walls of holes.
+    pub(crate) fn push_walls(&self, forces: &mut [Vec3]) {
+        self.holes.iter().for_each(|hole| hole.push(self.state.pressure[hole.cell as usize], forces));
+    }
+
+    /// Volume of the liquid in a room of a cell, as it is without pressure, beyond that room [m³].
+    pub(crate) fn compressed(&self, cell: usize, room: f64, pressure: f64) -> f64 {
+        let hole = cell.checked_sub(self.cell_count()).map(|hole| &self.holes[hole]);
+        (room * self.settings.compressibility + hole.map_or(0.0, |hole| hole.storage)) * pressure
     }
 
     /// Everything that changes.

@@ -23,7 +23,7 @@ pub(crate) struct WetPoint {
     pub(crate) is_permeable: bool,
 }
 
-/// The room for liquid at one place: the points of interfaces there.
+/// The room for liquid at one place: the points of interfaces there; none of a hole.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Cell {
     /// Its points.

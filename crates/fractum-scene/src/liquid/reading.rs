@@ -23,8 +23,12 @@ pub enum LiquidMeasure {
     Leaked,
     /// Area that is wet; of cells that are partly filled that part [m²].
     WettedArea,
-    /// Distance of the front from where it comes in [m].
+    /// Distance of the front from where it comes in, or from the middle of the hole where it does [m].
     Front,
+    /// Pressure in a hole; of all holes the mean over their volumes [Pa].
+    HolePressure,
+    /// Volume in a hole, or in all of them [m³].
+    HoleVolume,
 }
 
 /// Liquid on a face: means over its corners.
@@ -44,26 +48,27 @@ const OVERDRAWN: f64 = 1e-9;
 impl Liquid {
     /// Area of all cells, if liquid is in each [m²].
     pub(crate) fn area_if_all_wet(&self, interfaces: &Interfaces) -> Option<f64> {
-        let cells = &self.network.cells;
+        let cells = &self.network.cells[..self.cell_count()];
         let all_wet = (0..cells.len()).all(|cell| self.wet_area(interfaces, cell) > 0.0);
-        all_wet.then(|| cells.iter().map(|cell| cell.area).sum())
+        (all_wet && !cells.is_empty()).then(|| cells.iter().map(|cell| cell.area).sum())
     }
 
     /// Area of a cell that liquid is in: that at the tip presses on a cell that is still whole [m²].
     fn wet_area(&self, interfaces: &Interfaces, cell: usize) -> f64 {
         let points = self.network.cells[cell].points.iter().map(|&point| &self.network.points[point as usize]);
         let lets_in = |point: &&WetPoint| point.is_permeable || interfaces.state_of(point.at).residual < 1.0;
-        self.filled(cell) * points.filter(lets_in).map(|point| point.area).sum::<f64>()
+        // The sum over no point at all is -0.
+        self.filled(cell) * points.filter(lets_in).map(|point| point.area).sum::<f64>() + 0.0
     }
 
     /// Volume that was drawn and was not there, if there is any [m³].
     pub(crate) fn overdrawn(&self) -> Option<f64> {
         let LiquidState { pressure, amount, room, .. } = &self.state;
-        let extent = self.network.cells.iter().map(|cell| cell.area).sum::<f64>().sqrt();
+        let extent = (0..amount.len()).map(|cell| self.area(cell)).sum::<f64>().sqrt();
         // Sides that press on each other have less than no room.
         let missing = |cell: usize| {
             let below = room[cell].min(0.0) - amount[cell];
-            let seen = OVERDRAWN * self.network.cells[cell].area * extent;
+            let seen = OVERDRAWN * self.area(cell) * extent;
             if pressure[cell] <= 0.0 && below > seen { below } else { 0.0 }
         };
         let missing: f64 = (0..amount.len()).map(missing).sum();
@@ -88,20 +93,39 @@ impl Liquid {
         cell.points.iter().map(sum).sum::<f64>() / cell.area
     }
 
+    /// Area of a cell, or of the wall of a hole [m²].
+    pub(crate) fn area(&self, cell: usize) -> f64 {
+        cell.checked_sub(self.cell_count()).map_or(self.network.cells[cell].area, |hole| self.holes[hole].area)
+    }
+
     /// Something about it.
-    pub fn measure(&self, interfaces: &Interfaces, measure: LiquidMeasure) -> f64 {
+    ///
+    /// - `hole`: the one that is meant, by its number; all of them if absent
+    pub fn measure(&self, interfaces: &Interfaces, measure: LiquidMeasure, hole: Option<usize>) -> f64 {
         let at = || self.injected_at.iter().flatten().map(|(cell, _)| *cell as usize);
-        let area = |cell: usize| self.network.cells[cell].area;
-        let mean = |of: &dyn Fn(usize) -> f64| {
-            at().map(|cell| area(cell) * of(cell)).sum::<f64>() / at().map(area).sum::<f64>()
+        let mean = |cells: &[usize], weight: &dyn Fn(usize) -> f64, of: &dyn Fn(usize) -> f64| {
+            let weights = cells.iter().map(|&cell| weight(cell)).sum::<f64>();
+            cells.iter().map(|&cell| weight(cell) * of(cell)).sum::<f64>() / weights
         };
-        let cells = 0..self.network.cells.len();
+        let (area, pressure) = (|cell: usize| self.area(cell), |cell: usize| self.state.pressure[cell]);
+        let cells = 0..self.cell_count();
+        let meant = self.holes.iter().enumerate().filter(|(index, _)| hole.is_none_or(|own| own == *index));
+        let meant: Vec<usize> = meant.map(|(_, own)| own.cell as usize).collect();
         match measure {
-            LiquidMeasure::Pressure => mean(&|cell| self.state.pressure[cell]),
-            LiquidMeasure::Aperture => mean(&|cell| self.aperture_of(cell)),
+            LiquidMeasure::HolePressure => mean(&meant, &|cell| self.holes[cell - self.cell_count()].volume, &pressure),
+            LiquidMeasure::HoleVolume => meant.iter().map(|&cell| self.state.amount[cell]).sum(),
+            LiquidMeasure::Pressure => mean(&at().collect::<Vec<_>>(), &area, &pressure),
+            LiquidMeasure::Aperture => {
+                // What opens beside a hole that liquid is put in does so on its wall.
+                let beside = |cell: usize| match cell.checked_sub(self.cell_count()) {
+                    Some(hole) => self.holes[hole].cells.iter().map(|&cell| cell as usize).collect(),
+                    None => vec![cell],
+                };
+                mean(&at().flat_map(beside).collect::<Vec<_>>(), &area, &|cell| self.aperture_of(cell))
+            }
             LiquidMeasure::Rate => self.state.rates.iter().sum(),
             LiquidMeasure::Injected => self.state.injected,
-            LiquidMeasure::Volume => self.state.amount.iter().sum(),
+            LiquidMeasure::Volume => self.state.amount[cells].iter().sum(),
             LiquidMeasure::Leaked => self.state.leaked.iter().sum(),
             LiquidMeasure::WettedArea => cells.map(|cell| self.wet_area(interfaces, cell)).sum(),
             LiquidMeasure::Front => {

@@ -119,7 +119,7 @@ pub(super) fn no_equilibrium(scene: &Scene, follows: bool) -> StepError {
     } else {
         ""
     };
-    // Temperatures and liquid belong to times.
+    // Temperatures belong to times.
     let path = if follows || scene.heat().is_some() { "" } else { "follow it with control = \"path\", " };
     StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer, path }
 }
@@ -155,6 +155,9 @@ fn add_contact_forces_at_rest(scene: &mut Scene) {
     }
     scene.debris.add_forces_at_rest(&mut scene.solid);
     scene.optional.interfaces.add_forces_at_rest(&mut scene.solid);
+    if let Some(liquid) = &scene.optional.liquid {
+        liquid.push_walls(&mut scene.solid.force);
+    }
 }
 
 /// The forces of a state at rest that is no exact equilibrium.

@@ -19,8 +19,18 @@ pub(super) struct Compliance {
     prepared: bool,
     /// Jumps of all pairs under a unit force between the nodes of one, by pair and axis; none that nobody has asked for.
     columns: Vec<Option<Vec<Vec3>>>,
+    /// What a pressure in each hole does.
+    pub(super) holes: Vec<HoleColumn>,
     force: Vec<Vec3>,
     field: Vec<Vec3>,
+}
+
+/// What a pressure of 1 Pa in a hole does.
+pub(super) struct HoleColumn {
+    /// Jumps of all pairs [m/Pa]: by reciprocity also what a force between a pair adds to the volume of the hole [m³/N].
+    pub(super) jumps: Vec<Vec3>,
+    /// What it adds to the volumes of all holes [m³/Pa].
+    pub(super) gains: Vec<f64>,
 }
 
 /// Stiffness of the spring of a point in space [N/m].
@@ -38,16 +48,26 @@ impl Compliance {
         let (springs, without_jump) = (joints.iter().map(spring).collect(), joints.iter().map(without_jump).collect());
         let columns = vec![None; axes * joints.len()];
         let zero = vec![Vec3::zeros(); scene.solid.reference.len()];
-        Compliance { joints, axes, springs, without_jump, prepared: false, columns, force: zero.clone(), field: zero }
+        let (force, field) = (zero.clone(), zero);
+        Compliance { joints, axes, springs, without_jump, prepared: false, columns, holes: Vec::new(), force, field }
     }
 
-    /// Factorises the stiffness, once.
+    /// Factorises the stiffness and finds what pressures in holes do, once.
     pub(super) fn prepare(&mut self, scene: &Scene, system: &mut LinearSystem) -> Result<(), SparseError> {
-        if !self.prepared {
-            system.begin();
-            system.prepare(scene, &scene.solid.cell_damage(), &self.springs)?;
-            self.prepared = true;
+        if self.prepared {
+            return Ok(());
         }
+        system.begin();
+        system.prepare(scene, &scene.solid.cell_damage(), &self.springs)?;
+        let holes = scene.optional.liquid.iter().flat_map(|liquid| &liquid.holes);
+        for hole in holes.clone() {
+            self.force.fill(Vec3::zeros());
+            hole.push(1.0, &mut self.force);
+            system.solve(&self.force, &mut self.field)?;
+            let gains = holes.clone().map(|other| other.gain(&self.field)).collect();
+            self.holes.push(HoleColumn { jumps: self.jumps(&self.field), gains });
+        }
+        self.prepared = true;
         Ok(())
     }
 

@@ -3,7 +3,8 @@
 //! The solids are elastic, so that the jumps δ of the interfaces are those under the loads alone plus what forces between their sides add,
 //! δ = δ₀ + D f(δ, p), with the compliance D of the solids and of springs in all interfaces. f is what the law and the liquid push more than these springs. D is
 //! found column by column, for pairs that are more than springs: those that break, rub, open or are wet. Their jumps and the pressures of wet cells are the
-//! unknowns of Newton's method; the balance of each cell is implicit in time (backward Euler), and either the cell is full or it has no pressure.
+//! unknowns of Newton's method; the balance of each cell is implicit in time (backward Euler), and either the cell is full or it has no pressure. A hole is a
+//! cell whose pressure has a column too; the cells on its wall have its pressure from the moment at which liquid may enter them.
 
 mod compliance;
 mod dense;
@@ -13,7 +14,7 @@ mod trial;
 use fractum_math::Vec3;
 
 use super::StaticSolver;
-use super::equilibrium::{accept_equilibrium, boundary_at, come_apart, no_equilibrium};
+use super::equilibrium::{accept_equilibrium, boundary_at, come_apart};
 use crate::error::StepError;
 use crate::liquid::LiquidState;
 use crate::liquid::network::WetPoint;
@@ -46,6 +47,8 @@ struct WetStep {
     dt: f64,
     /// Jumps under the loads at its end, with springs in all interfaces.
     loaded: Vec<Vec3>,
+    /// Volumes of holes likewise, without pressure [m³].
+    volumes: Vec<f64>,
 }
 
 impl Wet {
@@ -82,7 +85,7 @@ impl StaticSolver {
                 return self.accept_wet(scene, &field, state, present + dt);
             }
             if begins || self.pace.part <= SMALLEST_PART {
-                return Err(no_equilibrium(scene, true));
+                return Err(StepError::NoWetEquilibrium { step: scene.clock.step, time: scene.clock.time });
             }
             self.pace.part *= 0.5;
         }
@@ -104,7 +107,9 @@ impl StaticSolver {
         compliance
             .displace(scene, &mut self.system, &mut field, &boundary.force, std::iter::empty())
             .map_err(|error| apart(scene, error))?;
-        let step = WetStep { time, dt, loaded: compliance.jumps(&field) };
+        let holes = scene.optional.liquid.iter().flat_map(|liquid| &liquid.holes);
+        let volumes = holes.map(|hole| hole.volume_in(&field)).collect();
+        let step = WetStep { time, dt, loaded: compliance.jumps(&field), volumes };
         let mut trial = Trial::begin(scene, compliance, &step);
         let mut iterations = 0;
         for _ in 0..ROUNDS {
@@ -120,6 +125,7 @@ impl StaticSolver {
             }
             let mut field = boundary.displacement;
             let pushed = trial.forces(scene, compliance);
+            trial.push_walls(scene, &mut boundary.force);
             compliance
                 .displace(scene, &mut self.system, &mut field, &boundary.force, pushed.into_iter())
                 .map_err(|error| apart(scene, error))?;

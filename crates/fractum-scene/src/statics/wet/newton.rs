@@ -3,10 +3,11 @@
 use fractum_math::{Mat3, Vec3};
 
 use super::WetStep;
-use super::compliance::Compliance;
+use super::compliance::{Compliance, HoleColumn};
 use super::dense::Dense;
 use super::trial::{NONE, Trial, Way, more};
 use crate::error::StepError;
+use crate::liquid::Liquid;
 use crate::liquid::network::WetPoint;
 use crate::scene::Scene;
 
@@ -54,6 +55,8 @@ impl Newton {
         if self.right.is_empty() {
             return Ok(Some(0));
         }
+        // What only presses on walls that bear it has no part that is too long.
+        let bears = if trial.active.is_empty() { f64::INFINITY } else { bears };
         let (mut missing, mut before) = (norm(&self.right), f64::INFINITY);
         for iteration in 1..=MOST {
             if stop() {
@@ -108,20 +111,28 @@ impl Newton {
         for (&joint, way) in trial.active.iter().zip(self.way[..places.jumps].chunks_exact(places.axes)) {
             way.iter().enumerate().for_each(|(axis, way)| trial.jump[joint as usize][axis] -= part * way);
         }
-        for (&cell, way) in trial.play.iter().zip(&self.way[places.jumps..]) {
+        for (&cell, way) in trial.unknown.iter().zip(&self.way[places.jumps..]) {
             trial.pressure[cell as usize] -= part * way / places.scale;
         }
+        trial.share_pressures();
     }
 
     /// Residuals, and their derivatives.
     fn assemble(&mut self, scene: &Scene, compliance: &Compliance, step: &WetStep, trial: &Trial, places: &Places) {
-        let size = places.jumps + trial.play.len();
+        let size = places.jumps + trial.unknown.len();
         self.matrix.reset(size);
         self.right.clear();
         self.right.resize(size, 0.0);
-        self.assemble_jumps(scene, compliance, step, trial, places);
-        if !trial.play.is_empty() {
-            self.assemble_cells(scene, compliance, step, trial, places);
+        let network = &scene.optional.liquid.as_ref().expect("liquid").network;
+        let law = |&joint: &u32| {
+            let (force, slope) =
+                more(scene.interfaces(), &compliance.joints[joint as usize], &trial.jump[joint as usize]);
+            (force + trial.thrust(network, joint), slope)
+        };
+        let laws: Vec<(Vec3, Mat3)> = trial.active.iter().map(law).collect();
+        self.assemble_jumps(scene, compliance, step, trial, places, &laws);
+        if !trial.unknown.is_empty() {
+            self.assemble_cells(scene, compliance, step, trial, places, &laws);
         }
     }
 
@@ -133,20 +144,20 @@ impl Newton {
         step: &WetStep,
         trial: &Trial,
         places: &Places,
+        laws: &[(Vec3, Mat3)],
     ) {
-        let (network, axes) = (&scene.optional.liquid.as_ref().expect("liquid").network, places.axes);
-        let laws: Vec<(Vec3, Mat3)> = trial
-            .active
-            .iter()
-            .map(|&joint| {
-                let (force, slope) =
-                    more(scene.interfaces(), &compliance.joints[joint as usize], &trial.jump[joint as usize]);
-                (force + trial.thrust(network, joint), slope)
-            })
-            .collect();
+        let own = scene.optional.liquid.as_ref().expect("liquid");
+        let (network, axes) = (&own.network, places.axes);
         for (row, &joint) in trial.active.iter().enumerate() {
-            let mut missing = trial.jump[joint as usize] - step.loaded[joint as usize];
-            for (column, (&pushed, (force, slope))) in trial.active.iter().zip(&laws).enumerate() {
+            let mut missing = trial.jump[joint as usize] - trial.driven(compliance, step, joint);
+            for (hole, column) in own.holes.iter().zip(&compliance.holes) {
+                let place = trial.cell_place[hole.cell as usize];
+                if place != NONE {
+                    let opens = column.jumps[joint as usize] / places.scale;
+                    (0..axes).for_each(|a| self.matrix.add(axes * row + a, places.cell(place), -opens[a]));
+                }
+            }
+            for (column, (&pushed, (force, slope))) in trial.active.iter().zip(laws).enumerate() {
                 let between = compliance.between(joint, pushed);
                 missing -= between * force;
                 let block = between * slope;
@@ -179,14 +190,20 @@ impl Newton {
         step: &WetStep,
         trial: &Trial,
         places: &Places,
+        laws: &[(Vec3, Mat3)],
     ) {
         let own = scene.optional.liquid.as_ref().expect("liquid");
         let network = &own.network;
         let inflow = trial.inflow(scene, step.dt);
         let compressibility = own.settings.compressibility;
+        let forces = || trial.active.iter().copied().zip(laws.iter().map(|(force, _)| *force));
+        let room_of = |cell: u32| match hole_at(own, cell) {
+            Some(hole) => trial.hole_volume(compliance, step, hole, forces()),
+            None => trial.room(scene, cell),
+        };
         // Pressure per volume that is too much in a cell [Pa/m³], for those that are full.
-        let mut is_full = vec![0.0; trial.play.len()];
-        for (place, &cell) in (0u32..).zip(&trial.play) {
+        let mut is_full = vec![0.0; trial.unknown.len()];
+        for (place, &cell) in (0u32..).zip(&trial.unknown) {
             let (index, row) = (cell as usize, places.cell(place));
             let pressure = trial.pressure[index];
             if !trial.prescribed[index].is_nan() {
@@ -194,11 +211,17 @@ impl Newton {
                 self.matrix.add(row, row, 1.0);
                 continue;
             }
-            let room = trial.room(scene, cell);
-            let comes = trial.before.amount[index] + inflow[index] + trial.comes[index];
-            let amount = comes - trial.taken(index, comes);
-            let give = give(compliance, network.cells[index].points.iter().map(|&p| &network.points[p as usize]));
-            let missing = (room * (1.0 + compressibility * pressure) - amount) / give;
+            let members = trial.with_pressure_of(own, cell);
+            let give = give(compliance, own, cell);
+            let (mut missing, mut amount, mut grows) = (0.0, 0.0, 0.0);
+            for member in members.clone() {
+                let (room, member) = (room_of(member), member as usize);
+                let comes = trial.before.amount[member] + inflow[member] + trial.comes[member];
+                let there = comes - trial.taken(member, comes);
+                missing += (room + own.compressed(member, room, pressure) - there) / give;
+                grows += own.compressed(member, room, 1.0);
+                amount += there;
+            }
             // A full cell stays full while it pushes: how its room grows, it cannot know before it opens. What has closed more than at the start has less
             // than no room.
             if pressure <= 0.0 && (missing >= 0.0 || amount <= 0.0) {
@@ -208,11 +231,15 @@ impl Newton {
             }
             is_full[place as usize] = 1.0 / give;
             self.right[row] = missing * places.scale;
-            self.matrix.add(row, row, room * compressibility / give);
-            for &point in &network.cells[index].points {
+            self.matrix.add(row, row, grows / give);
+            let weight = (1.0 + compressibility * pressure) / give;
+            for &point in members.flat_map(|member| &network.cells[member as usize].points) {
                 let WetPoint { joint, normal, area, .. } = &network.points[point as usize];
-                let opens = normal * (area * (1.0 + compressibility * pressure) / give * places.scale);
+                let opens = normal * (area * weight * places.scale);
                 self.add_jump(row, trial, places, *joint, &opens);
+            }
+            if let Some(hole) = hole_at(own, cell) {
+                self.assemble_volume(row, compliance, own, trial, places, (hole, weight, laws));
             }
         }
         for Way { slit, cells, conductance, slope } in trial.ways(scene) {
@@ -238,6 +265,39 @@ impl Newton {
         }
     }
 
+    /// Derivatives of the volume of a hole.
+    ///
+    /// - `weight`: of a volume in the row
+    fn assemble_volume(
+        &mut self,
+        row: usize,
+        compliance: &Compliance,
+        own: &Liquid,
+        trial: &Trial,
+        places: &Places,
+        (hole, weight, laws): (usize, f64, &[(Vec3, Mat3)]),
+    ) {
+        let network = &own.network;
+        let HoleColumn { jumps, gains } = &compliance.holes[hole];
+        for (other, gain) in own.holes.iter().zip(gains) {
+            let place = trial.cell_place[other.cell as usize];
+            if place != NONE {
+                self.matrix.add(row, places.cell(place), weight * gain);
+            }
+        }
+        for (&joint, (_, slope)) in trial.active.iter().zip(laws) {
+            let gains = jumps[joint as usize];
+            self.add_jump(row, trial, places, joint, &(slope.tr_mul(&gains) * (weight * places.scale)));
+            for &point in &network.points_of_joint[joint as usize] {
+                let WetPoint { cell, normal, area, .. } = &network.points[point as usize];
+                let place = trial.cell_place[*cell as usize];
+                if place != NONE {
+                    self.matrix.add(row, places.cell(place), weight * area * gains.dot(normal));
+                }
+            }
+        }
+    }
+
     /// Adds a derivative by the jump of a pair, if that is unknown.
     fn add_jump(&mut self, row: usize, trial: &Trial, places: &Places, joint: u32, by: &Vec3) {
         let place = trial.place[joint as usize];
@@ -256,22 +316,28 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// Volume that a cell gains per pressure in it alone [m³/Pa].
-fn give<'a>(compliance: &Compliance, points: impl Iterator<Item = &'a WetPoint>) -> f64 {
-    let of = |point: &WetPoint| {
-        let own = compliance.between(point.joint, point.joint);
-        point.area * point.area * point.normal.dot(&(own * point.normal))
+fn give(compliance: &Compliance, own: &Liquid, cell: u32) -> f64 {
+    if let Some(hole) = hole_at(own, cell) {
+        return compliance.holes[hole].gains[hole] + own.compressed(cell as usize, own.holes[hole].volume, 1.0);
+    }
+    let of = |&point: &u32| {
+        let point = &own.network.points[point as usize];
+        let between = compliance.between(point.joint, point.joint);
+        point.area * point.area * point.normal.dot(&(between * point.normal))
     };
-    points.map(of).sum()
+    own.network.cells[cell as usize].points.iter().map(of).sum()
+}
+
+/// Number of the hole that a cell is, if it is one.
+fn hole_at(own: &Liquid, cell: u32) -> Option<usize> {
+    (cell as usize).checked_sub(own.cell_count())
 }
 
 impl Places {
     fn of(scene: &Scene, compliance: &Compliance, trial: &Trial) -> Self {
-        let network = &scene.optional.liquid.as_ref().expect("liquid").network;
-        let per_area = |&cell: &u32| {
-            let own = &network.cells[cell as usize];
-            give(compliance, own.points.iter().map(|&p| &network.points[p as usize])) / own.area
-        };
-        let scale = trial.play.iter().map(per_area).fold(f64::MIN_POSITIVE, f64::max);
+        let own = scene.optional.liquid.as_ref().expect("liquid");
+        let per_area = |&cell: &u32| give(compliance, own, cell) / own.area(cell as usize);
+        let scale = trial.unknown.iter().map(per_area).fold(f64::MIN_POSITIVE, f64::max);
         Places { axes: compliance.axes, jumps: compliance.axes * trial.active.len(), scale }
     }
 

@@ -3,7 +3,7 @@
 use fractum_kernels::liquid::leaked;
 use fractum_math::{Mat3, Vec3};
 
-use super::compliance::{Compliance, spring_of};
+use super::compliance::{Compliance, HoleColumn, spring_of};
 use super::{MORE, WetStep};
 use crate::interfaces::Interfaces;
 use crate::interfaces::joints::{Joint, JointPoint};
@@ -25,9 +25,12 @@ pub(super) struct Trial {
     pub(super) jump: Vec<Vec3>,
     /// Pressure of each cell [Pa].
     pub(super) pressure: Vec<f64>,
-    /// Cells that liquid may be in, ascending; and the place of each cell among them.
+    /// Cells that liquid may be in, ascending; those of them whose pressure is an unknown; and the place of each cell among these.
     pub(super) play: Vec<u32>,
+    pub(super) unknown: Vec<u32>,
     pub(super) cell_place: Vec<u32>,
+    /// The cell of the hole whose pressure a cell on its wall has; none before liquid may enter it.
+    hole_of: Vec<u32>,
     /// Slits that let liquid through.
     is_open: Vec<bool>,
     /// The liquid at the start of the step.
@@ -84,7 +87,9 @@ impl Trial {
             jump: compliance.jumps(&scene.solid.displacement),
             pressure: before.pressure.clone(),
             play: Vec::new(),
+            unknown: Vec::new(),
             cell_place: vec![NONE; cells],
+            hole_of: vec![NONE; cells],
             is_open: vec![false; network.slits.len()],
             before,
             comes: vec![0.0; cells],
@@ -95,10 +100,10 @@ impl Trial {
             trial.drive(own, step);
             trial.play = (0..cells as u32).filter(|&cell| trial.is_wet(cell)).collect();
             let driven = own.injected_at.iter().flatten().map(|(cell, _)| *cell);
-            trial.play.extend(driven);
+            trial.play.extend(driven.chain(own.holes.iter().map(|hole| hole.cell)));
         }
         trial.open_slits(scene, compliance);
-        trial.number(network);
+        trial.number(own);
         trial
     }
 
@@ -108,7 +113,10 @@ impl Trial {
             for &(cell, share) in cells {
                 let place = &own.network.cells[cell as usize].place;
                 match &injection.drive {
-                    InjectionDrive::Rate(rate) => self.comes[cell as usize] += rate(step.time, place) * share * step.dt,
+                    // A step may end just behind an instant at which the rate jumps.
+                    InjectionDrive::Rate(rate) => {
+                        self.comes[cell as usize] += rate(step.time - 0.5 * step.dt, place) * share * step.dt
+                    }
                     InjectionDrive::Pressure(value) => {
                         self.prescribed[cell as usize] = value(step.time, place).max(0.0)
                     }
@@ -151,8 +159,41 @@ impl Trial {
         more
     }
 
+    /// Gives cells on the walls of holes the pressure there, if liquid may enter them.
+    fn enter_from_holes(&mut self, own: &Liquid) {
+        if self.play.is_empty() {
+            return;
+        }
+        for hole in &own.holes {
+            for &cell in &hole.cells {
+                let may_enter = || own.network.slits_of[cell as usize].iter().any(|&slit| self.is_open[slit as usize]);
+                if self.hole_of[cell as usize] == NONE && (self.is_wet(cell) || may_enter()) {
+                    self.hole_of[cell as usize] = hole.cell;
+                    self.play.push(cell);
+                }
+            }
+        }
+        self.share_pressures();
+    }
+
+    /// Gives cells the pressure of the hole that they belong to.
+    pub(super) fn share_pressures(&mut self) {
+        for (cell, &hole) in self.hole_of.iter().enumerate().filter(|(_, hole)| **hole != NONE) {
+            self.pressure[cell] = self.pressure[hole as usize];
+        }
+    }
+
+    /// Cells that have the pressure of one, which is the first of them.
+    pub(super) fn with_pressure_of<'a>(&'a self, own: &'a Liquid, cell: u32) -> impl Iterator<Item = u32> + Clone + 'a {
+        let hole = cell.checked_sub(own.cell_count() as u32).map(|hole| &own.holes[hole as usize]);
+        let beside = hole.into_iter().flat_map(|hole| &hole.cells).copied();
+        std::iter::once(cell).chain(beside.filter(move |&beside| self.hole_of[beside as usize] == cell))
+    }
+
     /// Sorts what is unknown, the pairs of cells in play included; whether there are new ones.
-    fn number(&mut self, network: &Network) -> bool {
+    fn number(&mut self, own: &Liquid) -> bool {
+        let network = &own.network;
+        self.enter_from_holes(own);
         self.play.sort_unstable();
         self.play.dedup();
         let of = |cell: &u32| network.cells[*cell as usize].points.iter();
@@ -164,22 +205,28 @@ impl Trial {
         for (place, &joint) in (0..).zip(&self.active) {
             is_new |= std::mem::replace(&mut self.place[joint as usize], place) == NONE;
         }
-        for (place, &cell) in (0..).zip(&self.play) {
+        self.unknown = self.play.iter().copied().filter(|&cell| self.hole_of[cell as usize] == NONE).collect();
+        for (place, &cell) in (0..).zip(&self.unknown) {
             is_new |= std::mem::replace(&mut self.cell_place[cell as usize], place) == NONE;
+        }
+        for (cell, &hole) in self.hole_of.iter().enumerate().filter(|(_, hole)| **hole != NONE) {
+            let place = self.cell_place[hole as usize];
+            is_new |= std::mem::replace(&mut self.cell_place[cell], place) == NONE;
         }
         is_new
     }
 
     /// Makes unknown what turns out to break, to move or to get wet; whether there is any.
     pub(super) fn grow(&mut self, scene: &Scene, compliance: &Compliance, step: &WetStep) -> bool {
-        let network = &liquid(scene).network;
+        let own = liquid(scene);
+        let network = &own.network;
         let forces = self.forces(scene, compliance);
         let mut largest = f64::MIN_POSITIVE;
         let mut beyond = Vec::new();
         for (index, joint) in (0u32..).zip(&compliance.joints) {
             if self.place[index as usize] == NONE {
                 let pushed = forces.iter().map(|&(active, force)| compliance.between(index, active) * force);
-                self.jump[index as usize] = step.loaded[index as usize] + pushed.sum::<Vec3>();
+                self.jump[index as usize] = self.driven(compliance, step, index) + pushed.sum::<Vec3>();
                 let (force, _) = more(scene.interfaces(), joint, &self.jump[index as usize]);
                 beyond.push((index, force.norm()));
             }
@@ -198,7 +245,40 @@ impl Trial {
             let reached: Vec<u32> = reached.collect();
             self.play.extend(reached);
         }
-        self.number(network) || more_slits
+        self.number(own) || more_slits
+    }
+
+    /// Jump of a pair under the loads and the pressures in holes [m].
+    pub(super) fn driven(&self, compliance: &Compliance, step: &WetStep, joint: u32) -> Vec3 {
+        let pushed = compliance.holes.iter().zip(self.of_holes(compliance));
+        let pushed = pushed.map(|(hole, pressure)| hole.jumps[joint as usize] * *pressure);
+        step.loaded[joint as usize] + pushed.sum::<Vec3>()
+    }
+
+    /// Pressures in holes, whose cells are the last ones [Pa].
+    fn of_holes(&self, compliance: &Compliance) -> &[f64] {
+        &self.pressure[self.pressure.len() - compliance.holes.len()..]
+    }
+
+    /// Volume of a hole [m³].
+    ///
+    /// - `forces`: of [`Trial::forces`]
+    pub(super) fn hole_volume(
+        &self,
+        compliance: &Compliance,
+        step: &WetStep,
+        hole: usize,
+        forces: impl Iterator<Item = (u32, Vec3)>,
+    ) -> f64 {
+        let HoleColumn { jumps, gains } = &compliance.holes[hole];
+        let by_pressure = gains.iter().zip(self.of_holes(compliance)).map(|(gain, pressure)| gain * pressure);
+        let by_forces = forces.map(|(joint, force)| jumps[joint as usize].dot(&force));
+        step.volumes[hole] + by_pressure.sum::<f64>() + by_forces.sum::<f64>()
+    }
+
+    /// Adds the forces of the liquid on the walls of holes.
+    pub(super) fn push_walls(&self, scene: &Scene, forces: &mut [Vec3]) {
+        liquid(scene).holes.iter().for_each(|hole| hole.push(self.pressure[hole.cell as usize], forces));
     }
 
     /// Forces between the nodes of unknown pairs beyond the springs [N].
@@ -255,18 +335,18 @@ impl Trial {
         }
     }
 
+    /// Room of a cell of interfaces [m³].
+    pub(super) fn room(&self, scene: &Scene, cell: u32) -> f64 {
+        let network = &liquid(scene).network;
+        let of = |&point: &u32| network.points[point as usize].area * self.aperture(scene, point);
+        network.cells[cell as usize].points.iter().map(of).sum()
+    }
+
     /// Aperture of a point, negative where its rough walls are closed [m].
     pub(super) fn aperture(&self, scene: &Scene, point: u32) -> f64 {
         let own = liquid(scene);
         let WetPoint { joint, normal, .. } = &own.network.points[point as usize];
         own.settings.aperture + normal.dot(&self.jump[*joint as usize]) - self.before.closed[point as usize]
-    }
-
-    /// Room of a cell [m³].
-    pub(super) fn room(&self, scene: &Scene, cell: u32) -> f64 {
-        let network = &liquid(scene).network;
-        let of = |&point: &u32| network.points[point as usize].area * self.aperture(scene, point);
-        network.cells[cell as usize].points.iter().map(of).sum()
     }
 
     /// The ways between cells in play.
@@ -319,8 +399,13 @@ impl Trial {
         }
         let trial = Trial { before: LiquidState { closed: state.closed.clone(), ..self.before.clone() }, ..self };
         state.aperture = (0..own.network.points.len() as u32).map(|point| trial.aperture(scene, point)).collect();
-        state.room = (0..own.network.cells.len() as u32).map(|cell| trial.room(scene, cell)).collect();
-        if step.dt > 0.0 {
+        state.room = (0..own.cell_count() as u32).map(|cell| trial.room(scene, cell)).collect();
+        let forces = trial.forces(scene, compliance);
+        let volume = |hole: usize| trial.hole_volume(compliance, step, hole, forces.iter().copied());
+        state.room.extend((0..own.holes.len()).map(volume));
+        if step.dt == 0.0 {
+            own.holes.iter().for_each(|hole| state.amount[hole.cell as usize] = state.room[hole.cell as usize]);
+        } else {
             trial.book(own, scene, step, &mut state);
         }
         state.active = trial.active;
@@ -330,15 +415,26 @@ impl Trial {
 
     /// Amounts and energies at the end of a step.
     fn book(&self, own: &Liquid, scene: &Scene, step: &WetStep, state: &mut LiquidState) {
-        let (before, compressibility) = (&self.before, own.settings.compressibility);
+        let before = &self.before;
         let mean = |cell: usize| 0.5 * (before.pressure[cell] + self.pressure[cell]);
-        let inflow = self.inflow(scene, step.dt);
+        let mut inflow = self.inflow(scene, step.dt);
         let mut put_in = vec![0.0; inflow.len()];
+        for (cell, hole) in self.hole_of.iter().enumerate().filter(|(_, hole)| **hole != NONE) {
+            let (hole, room, pressure) = (*hole as usize, state.room[cell], self.pressure[cell]);
+            let without = before.amount[cell] + inflow[cell];
+            let without = without - self.taken(cell, without);
+            // A cell on the wall of a hole is as full as the hole: it takes the rest from there.
+            let full = room + own.compressed(cell, room, pressure);
+            let amount = if pressure > 0.0 { full } else { without.clamp(0.0, full.max(0.0)) };
+            inflow[cell] += amount - without;
+            inflow[hole] -= amount - without;
+            state.viscous += (amount - without) * (mean(hole) - mean(cell));
+        }
         for &cell in &self.play {
             let cell = cell as usize;
             let pressure = self.pressure[cell];
             let held = [(before.room[cell], before.pressure[cell]), (state.room[cell], pressure)];
-            let [was, is] = held.map(|(room, pressure)| room * compressibility * pressure);
+            let [was, is] = held.map(|(room, pressure)| own.compressed(cell, room, pressure));
             let comes = before.amount[cell] + inflow[cell];
             let taken = self.taken(cell, comes + self.comes[cell]);
             let without = comes - taken;
