@@ -26,11 +26,11 @@ def write(path, points, groups):
     path.write_text("\n".join(lines))
 
 
-def rectangle(name, xs, ys, regions, lines, jitter=0.0, seed=1, turn=0.0):
+def rectangle(name, xs, ys, regions, lines, jitter=0.0, seed=1, turn=0.0, place=None):
     """A rectangle of triangles.
 
     - `regions`: name -> condition on the middle of an element; `lines`: name -> condition on a point of both ends of an edge
-    - `jitter`: share of a cell by which nodes off all lines move; `turn`: angle by which all of it turns [deg]
+    - `jitter`: share of a cell by which nodes off all lines move; `turn`: angle by which all of it turns [deg]; `place`: where its points lie in truth
     """
     noise = random.Random(seed)
     columns = len(xs)
@@ -57,7 +57,31 @@ def rectangle(name, xs, ys, regions, lines, jitter=0.0, seed=1, turn=0.0):
         groups[line] = (1, sorted(e for e in edges if all(holds(*points[n]) for n in e)))
     angle = math.radians(turn)
     c, s = math.cos(angle), math.sin(angle)
+    points = [place(*point) for point in points] if place else points
     write(FOLDER / f"{name}.msh", [(c * x - s * y, s * x + c * y, 0.0) for x, y in points], groups)
+
+
+def arch(name, radius, thickness, voussoirs, along=3, across=4):
+    """A half circle of voussoirs on two straight blocks, by its mean radius: joints between all of them, and where the blocks begin."""
+    length = math.pi * radius
+    block = spaced((thickness, across))
+    xs = [x - thickness for x in block[:-1]] + spaced((length, voussoirs * along)) + [length + x for x in block[1:]]
+    ys = [y - thickness / 2 for y in block]
+    joints = [length * joint / voussoirs for joint in range(voussoirs + 1)]
+
+    def place(x, y):
+        if x < 0:
+            return radius + y, x
+        if x > length:
+            return -radius - y, length - x
+        return (radius + y) * math.cos(x / radius), (radius + y) * math.sin(x / radius)
+
+    lines = {
+        "joints": lambda x, y: any(near(x, joint) for joint in joints),
+        "right": lambda x, y: near(x, xs[0]),
+        "left": lambda x, y: near(x, xs[-1]),
+    }
+    rectangle(name, xs, ys, {"stone": lambda x, y: True}, lines, jitter=0.1, place=place)
 
 
 def middle(points, triangle):
@@ -207,6 +231,8 @@ def main():
             "bottom": lambda x, y: near(y, -40.0),
         },
     )
+    # A masonry arch, a little thicker than it must be to stand.
+    arch("arch", 10.0, 1.12, 27)
 
 
 if __name__ == "__main__":

@@ -536,3 +536,32 @@ fn a_body_of_one_element_across_that_may_crack_is_told() {
         assert!(!place.fractum(&["check", "case.toml"]).stdout.contains("may cost twice"));
     }
 }
+
+/// The arch of cases/interfaces, with its thickness times a factor.
+fn arch(factor: f64) -> Workplace {
+    let mesh = include_str!("../../../meshes/interfaces/arch.msh");
+    let (head, rest) = mesh.split_once("$Nodes\n").unwrap();
+    let (nodes, tail) = rest.split_once("$EndNodes").unwrap();
+    let thinned = nodes.lines().map(|line| match line.split(' ').collect::<Vec<_>>()[..] {
+        [node, x, y, z] => {
+            let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse().unwrap());
+            // The blocks below the arch are straight.
+            let (radius, foot) = if y > 0.0 { (x.hypot(y), y) } else { (x.abs(), 0.0) };
+            let scale = (10.0 + factor * (radius - 10.0)) / radius;
+            format!("{node} {} {} {z}\n", scale * x, if foot > 0.0 { scale * y } else { y })
+        }
+        _ => format!("{line}\n"),
+    });
+    let mesh = format!("{head}$Nodes\n{}$EndNodes{tail}", thinned.collect::<String>());
+    let case = include_str!("../../../cases/interfaces/arch.toml");
+    Workplace::with_mesh(&case.replace("../../meshes/interfaces/arch.msh", "bar.msh"), mesh.as_bytes())
+}
+
+#[test]
+fn an_arch_stands_as_long_as_a_line_of_thrust_lies_within_it() {
+    let stands = run(&arch(0.113 / 0.112), "out", "1");
+    assert_eq!(stands["status"], "completed");
+    let fallen = arch(0.105 / 0.112).fractum(&["run", "case.toml", "-o", "out", "--quiet"]);
+    assert_eq!(fallen.code, Some(2), "{}", fallen.stderr);
+    assert!(fallen.stderr.contains("a piece has come loose"), "{}", fallen.stderr);
+}
