@@ -122,7 +122,8 @@ fn law(table: &Table<'_>) -> Option<InterfaceLaw> {
     };
     if !bonded {
         for name in OF_BONDS {
-            table.refuse(name, "with bonded = false");
+            let of_friction = "with bonded = false, where residual_friction_angle is that of its sides";
+            table.refuse(name, if name == "friction_angle" { of_friction } else { "with bonded = false" });
         }
         return Some(unbonded);
     }
