@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
-use fractum_scene::statics::StaticSolver;
+use fractum_scene::statics::{StaticSettings, StaticSolver};
 use fractum_scene::{
     CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, InterfaceSoftening,
     Interfaces, Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of,
@@ -128,7 +128,8 @@ impl Pumped {
     }
 
     fn solver(&self, scene: &Scene) -> StaticSolver {
-        StaticSolver::new(scene, at_rest(self.end / self.steps, self.end)).unwrap()
+        let begins = StaticSettings { turns: vec![0.0], ..at_rest(self.end / self.steps, self.end) };
+        StaticSolver::new(scene, begins).unwrap()
     }
 
     /// Runs to the end; what is seen half-way and there.

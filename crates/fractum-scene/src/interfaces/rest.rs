@@ -1,7 +1,7 @@
 //! Interfaces at equilibrium: those with a stiffness are springs between two nodes, linear about the last iterate by their tangent or secant.
 
 use fractum_fem::Solid;
-use fractum_kernels::interface::SpringInterface;
+use fractum_kernels::interface::{InterfaceForce, InterfaceState, SpringInterface};
 use fractum_math::{Mat3, Vec3};
 
 use super::inside::pressure_in;
@@ -86,9 +86,10 @@ impl Interfaces {
     }
 
     /// Takes over the histories of a state of equilibrium; what friction took, all other work that they took, that of pressure
-    /// inside, and what of the second one sides that were never joined have neither stored nor rubbed away: it is there as far as one step lets them part under
-    /// a pressure that only comes in it [J].
-    pub(crate) fn accept_at_rest(&mut self, solid: &Solid, time: f64) -> [f64; 4] {
+    /// inside, and what of the second one is none of their law: it is there as far as one step lets sides part under a pressure that only comes in it [J].
+    ///
+    /// - `is_wet`: whether liquid may part them, else the last is 0
+    pub(crate) fn accept_at_rest(&mut self, solid: &Solid, time: f64, is_wet: bool) -> [f64; 4] {
         let Interfaces { kinds, pressures, clusters, .. } = self;
         let (mut taken, mut surplus) = (Taken::default(), 0.0);
         for point in clusters.iter_mut().flat_map(|cluster| &mut cluster.points).filter(|point| point.area > 0.0) {
@@ -98,12 +99,16 @@ impl Interfaces {
             let before = (taken.work - taken.friction, point.area * point.force.stored);
             taken.half(point, b - a, Closing::Stored);
             let rubbed = Rubbed::of(point);
+            let (was, state, friction) = (point.local(point.jump), point.state, point.force.friction);
             point.force = interface.load(point.local(b - a), &mut point.state);
             point.pull = point.frame.tr_mul(&point.force.traction()) * point.area;
             taken.half(point, b - a, Closing::Stored);
             taken.rub(point, &rubbed);
-            if !law.is_bonded() {
-                surplus += taken.work - taken.friction - before.0 - (point.area * point.force.stored - before.1);
+            let took = taken.work - taken.friction - before.0;
+            if is_wet && !law.is_bonded() {
+                surplus += took - (point.area * point.force.stored - before.1);
+            } else if is_wet && [friction, point.force.friction] == [Vec3::zeros(); 2] {
+                surplus += took - point.area * work_by_law(&interface, state, [was, point.local(b - a)]);
             }
             if let Some(pressure) = pressure_in(pressures, point.kind) {
                 let thrust = pressure.thrust(point, point.state.residual, time);
@@ -124,4 +129,21 @@ impl Interfaces {
             solid.force[b] -= pull;
         }
     }
+}
+
+/// Parts of a way over which the work of a law is summed; they grow from its begin on, where a closed interface opens and softens.
+const PARTS: u32 = 200;
+
+/// Work per area of pressure and cohesion over a way from one jump to another, both in the frame of the face [J/m²].
+fn work_by_law(interface: &SpringInterface, mut state: InterfaceState, [from, to]: [Vec3; 2]) -> f64 {
+    let pulls = |force: InterfaceForce| force.traction() - force.friction;
+    let at = |part: u32| from + (to - from) * (f64::from(part) / f64::from(PARTS)).powi(3);
+    let mut pull = pulls(interface.load(from, &mut state));
+    let mut work = 0.0;
+    for part in 1..=PARTS {
+        let next = pulls(interface.load(at(part), &mut state));
+        work += 0.5 * (pull + next).dot(&(at(part) - at(part - 1)));
+        pull = next;
+    }
+    work
 }

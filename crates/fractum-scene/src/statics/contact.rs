@@ -338,7 +338,8 @@ pub(super) fn accept_contacts(scene: &mut Scene, before: &[Vec3], present: f64, 
     if !has_contacts(scene) {
         return;
     }
-    let [friction, taken, external, surplus] = scene.optional.interfaces.accept_at_rest(&scene.solid, time);
+    let is_wet = scene.optional.liquid.is_some();
+    let [friction, taken, external, surplus] = scene.optional.interfaces.accept_at_rest(&scene.solid, time, is_wet);
     scene.books.friction += friction;
     scene.books.interfaces += taken;
     scene.books.external += external;
