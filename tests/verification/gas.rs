@@ -105,7 +105,7 @@ fn gas_breaks_the_solid_follows_its_cracks_and_the_balance_closes() {
         let ledger = *scene.ledger();
         let gas = scene.gas().unwrap();
         let work = ledger[EnergyKind::GasSupplied] - ledger[EnergyKind::Gas] - ledger[EnergyKind::GasLeaked];
-        let filled = gas.cells().filter(|cell| cell.element.is_some() && cell.pressure > 1e5).count();
+        let filled = gas.cells().filter(|cell| cell.element().is_some() && cell.pressure > 1e5).count();
         println!(
             "{cells}: removed {}, cells {filled}, work {work:.3} J of {:.3} J, leaked {:.3} J, residual {:.2e}",
             scene.counts().removed_elements,
@@ -210,13 +210,13 @@ fn gas_does_not_leak_where_cracks_reach_a_plane_of_symmetry() {
         scene.solid.element_middle(body, element).iter().take(2).any(|c| *c > 0.9 * SIZE)
     };
     let reached = |scene: &Scene| {
-        scene.gas().unwrap().cells().filter_map(|cell| cell.element).any(|element| is_far(scene, element))
+        scene.gas().unwrap().cells().filter_map(|cell| cell.element()).any(|element| is_far(scene, element))
     };
     while !scene.is_finished() && !reached(&scene) {
         scene.step(true).unwrap();
     }
     let gas = scene.gas().unwrap();
-    let on_plane = gas.cells().filter_map(|cell| cell.element).filter(|&(body, element)| {
+    let on_plane = gas.cells().filter_map(|cell| cell.element()).filter(|&(body, element)| {
         let nodes = scene.solid.body(body).elements[element as usize];
         (0..3).any(|i| planes.hold(&scene.solid, &[nodes[i], nodes[(i + 1) % 3]], 0.01))
     });

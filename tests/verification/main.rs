@@ -10,6 +10,7 @@ mod element;
 mod excavation;
 mod fracture_balance;
 mod gas;
+mod gas_interfaces;
 mod inside_pressure;
 mod interface_path;
 mod interfaces;

@@ -45,6 +45,13 @@ impl Slab {
 
     /// Its mesh, cut along y = 0.
     pub(crate) fn mesh(&self) -> Mesh {
+        self.mesh_with(|_| true, |_| true)
+    }
+
+    /// The mesh of the elements that are kept, cut along y = 0 between those that are.
+    ///
+    /// - `keep`, `cut`: by the middle of an element
+    pub(crate) fn mesh_with(&self, keep: impl Fn(&Vec3) -> bool, cut: impl Fn(&Vec3) -> bool) -> Mesh {
         let [x, y, z] = self.places.each_ref().map(|places| places.len().saturating_sub(1));
         let [nx, ny, nz] = [x, y, z].map(|count| count as u32);
         let mut mesh = if self.is_plane() {
@@ -58,19 +65,63 @@ impl Slab {
                 node[axis] = self.places[axis][node[axis].round() as usize];
             }
         }
+        let middle = |mesh: &Mesh, e: &[u32]| e.iter().map(|&n| mesh.nodes[n as usize]).sum::<Vec3>() / e.len() as f64;
+        let kept = Mesh {
+            triangles: mesh.triangles.iter().filter(|e| axes == 2 && keep(&middle(&mesh, &e[..]))).copied().collect(),
+            tetrahedra: mesh.tetrahedra.iter().filter(|e| keep(&middle(&mesh, &e[..]))).copied().collect(),
+            nodes: mesh.nodes.clone(),
+            ..Mesh::default()
+        };
+        let (left, all) = if axes == 2 {
+            (kept.triangles.len(), mesh.triangles.len())
+        } else {
+            (kept.tetrahedra.len(), mesh.tetrahedra.len())
+        };
+        if left < all {
+            mesh = kept;
+            drop_unused_nodes(&mut mesh);
+        }
         let elements: Vec<Vec<u32>> = match self.is_plane() {
             true => mesh.triangles.iter().map(|e| e.to_vec()).collect(),
             false => mesh.tetrahedra.iter().map(|e| e.to_vec()).collect(),
         };
-        let is_low = |e: &[u32]| e.iter().map(|&n| mesh.nodes[n as usize].y).sum::<f64>() < 0.0;
         for (tag, name, low) in [(90, "low", true), (91, "high", false)] {
-            let own = (0u32..).zip(&elements).filter(|(_, e)| is_low(e) == low).map(|(number, _)| number);
+            let is_own = |e: &[u32]| {
+                let middle = middle(&mesh, e);
+                (middle.y < 0.0) == low && cut(&middle)
+            };
+            let own = (0u32..).zip(&elements).filter(|(_, e)| is_own(e)).map(|(number, _)| number);
             let mut group = Group { name: name.to_owned(), dimension: axes as u8, tag, ..Group::default() };
             *(if self.is_plane() { &mut group.triangles } else { &mut group.tetrahedra }) = own.collect();
             mesh.groups.push(group);
         }
         mesh.cut(&[CutAlong::Between(&["low".to_owned(), "high".to_owned()])]).unwrap();
         mesh
+    }
+
+    /// The solid of a mesh of this slab and its interfaces, the kind of each face by its centre.
+    pub(crate) fn solid(
+        &self,
+        mesh: &Mesh,
+        kinds: Vec<InterfaceKind>,
+        kind_of: impl Fn(&Vec3) -> u32,
+    ) -> (Solid, Interfaces) {
+        let (kind, elements): (_, Vec<[u32; 4]>) = match self.is_plane() {
+            true => (ElementKind::T3, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect()),
+            false => (ElementKind::T4, mesh.tetrahedra.clone()),
+        };
+        let body = Body::new("slab", kind, elements, self.elastic);
+        let body = Body { thickness: 1.0, formulation: self.formulation, ..body };
+        let solid = Solid::new(mesh.nodes.clone(), vec![body]).unwrap();
+        let face = |face: &fractum_mesh::CutFace| {
+            let corners = face.sides[0].map(|node| solid.reference[node as usize]);
+            let centre =
+                if self.is_plane() { (corners[0] + corners[1]) / 2.0 } else { corners.iter().sum::<Vec3>() / 3.0 };
+            InterfaceFace { kind: kind_of(&centre), sides: face.sides, elements: face.elements.map(|e| (0, e)) }
+        };
+        let faces = mesh.cuts.iter().map(face).collect();
+        let interfaces = Interfaces::new(&solid, kinds, faces);
+        (solid, interfaces)
     }
 
     /// Nodes of a mesh at some places.
@@ -87,26 +138,28 @@ impl Slab {
         loads: impl FnOnce(&Mesh, &Solid) -> Loads,
     ) -> (Scene, Mesh) {
         let mesh = self.mesh();
-        let (kind, elements): (_, Vec<[u32; 4]>) = match self.is_plane() {
-            true => (ElementKind::T3, mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect()),
-            false => (ElementKind::T4, mesh.tetrahedra.clone()),
-        };
-        let body = Body::new("slab", kind, elements, self.elastic);
-        let body = Body { thickness: 1.0, formulation: self.formulation, ..body };
-        let solid = Solid::new(mesh.nodes.clone(), vec![body]).unwrap();
-        let face = |face: &fractum_mesh::CutFace| {
-            let corners = face.sides[0].map(|node| solid.reference[node as usize]);
-            let centre =
-                if self.is_plane() { (corners[0] + corners[1]) / 2.0 } else { corners.iter().sum::<Vec3>() / 3.0 };
-            InterfaceFace { kind: kind_of(&centre), sides: face.sides, elements: face.elements.map(|e| (0, e)) }
-        };
-        let interfaces = Interfaces::new(&solid, kinds, mesh.cuts.iter().map(face).collect());
+        let (solid, interfaces) = self.solid(&mesh, kinds, kind_of);
         let supports = Supports::new(supports(&mesh), &solid.reference).unwrap();
         let loads = loads(&mesh, &solid);
         let debris = Debris::new(&solid, vec![ContactParameters::default()]);
         let scene = Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(end, 1e-2));
         (scene.with_interfaces(interfaces), mesh)
     }
+}
+
+fn drop_unused_nodes(mesh: &mut Mesh) {
+    let mut number = vec![u32::MAX; mesh.nodes.len()];
+    let elements = mesh.triangles.iter().flatten().chain(mesh.tetrahedra.iter().flatten());
+    elements.for_each(|&node| number[node as usize] = 0);
+    let mut nodes = Vec::new();
+    for (node, number) in mesh.nodes.iter().zip(&mut number).filter(|(_, number)| **number == 0) {
+        *number = nodes.len() as u32;
+        nodes.push(*node);
+    }
+    mesh.nodes = nodes;
+    let elements = mesh.triangles.iter_mut().flatten().chain(mesh.tetrahedra.iter_mut().flatten());
+    elements.for_each(|node| *node = number[*node as usize]);
+    mesh.number();
 }
 
 /// A support that holds nodes along an axis.

@@ -110,6 +110,12 @@ impl Network {
         self.contents.supplied += amount;
     }
 
+    /// Leaves the first cells, of which the others have got nothing yet.
+    pub fn truncate(&mut self, count: usize) {
+        self.contents.cells.truncate(count);
+        self.contents.rounding.truncate(count);
+    }
+
     /// Puts gas into a cell.
     pub fn supply(&mut self, cell: usize, amount: Amount) {
         self.contents.add(cell, amount);

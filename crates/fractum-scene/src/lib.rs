@@ -65,7 +65,9 @@ pub use fractum_heat::HeatCondition;
 pub use fractum_kernels::interface::{InterfaceLaw, InterfaceSoftening, MixedMode, Roughness, SpringInterface};
 pub use fractum_kernels::liquid::CubicLaw;
 pub use fragment::{Fragment, solid_pieces};
-pub use gas::{Charge, Gas, GasCell, GasHole, GasMeasure, GasSettings, GasSource, HoleEnds, Stemming, SymmetryPlanes};
+pub use gas::{
+    Charge, Gas, GasCell, GasHole, GasMeasure, GasRoom, GasSettings, GasSource, HoleEnds, Stemming, SymmetryPlanes,
+};
 pub use heat::{
     Heat, HeatMeasure, HeatSettings, HeatState, PackingConduction, PackingReport, TemperatureTake, ThermalMaterial,
 };

@@ -90,6 +90,7 @@ impl Scene {
     /// The same scene with interfaces between its elements, before its first step.
     pub fn with_interfaces(mut self, interfaces: Interfaces) -> Self {
         self.debris.apart = Apart::new(interfaces.doubled());
+        self.loads.enter_interfaces(&self.solid, &interfaces);
         self.optional.interfaces = interfaces;
         self.clock = Clock::new(next_dt(&self, 0.0));
         self

@@ -197,7 +197,7 @@ fn add_load_forces(scene: &mut Scene, step: &ThisStep, passed: &mut impl FnMut(P
     let load = scene.loads.add_forces(&mut scene.solid, step.time, step.dt_before);
     if scene.loads.gas().is_some() {
         passed(Phase::Motion);
-        scene.loads.add_gas_forces(&mut scene.solid, step.time, step.elapsed);
+        scene.loads.add_gas_forces(&mut scene.solid, &scene.optional.interfaces, step.time, step.elapsed);
         passed(Phase::Gas);
     }
     load

@@ -107,7 +107,7 @@ impl<'a> Holes<'a> {
         let Holes { planes, solid, held, .. } = self;
         for (axis, plane) in planes.iter().enumerate() {
             let Some(plane) = plane else { continue };
-            let only = SymmetryPlanes(std::array::from_fn(|a| (a == axis).then_some(plane.value)));
+            let only = self.symmetry().only(axis);
             let size =
                 |facet: &[u32; 3]| (solid.reference[facet[0] as usize] - solid.reference[facet[1] as usize]).norm();
             let mut ends = facets.iter().flat_map(|facet| facet.map(|node| (node, size(facet))));

@@ -188,9 +188,6 @@ pub(super) fn check(context: &mut Context<'_>) {
 /// Pressure and counts go through cracks between elements alone.
 fn check_cracks(context: &mut Context<'_>, place: &Place) {
     let case = context.case;
-    if case.flows.gas.as_ref().is_some_and(|gas| gas.in_cracks) {
-        context.error(place, "beside gas that flows in cracks", "gas.in_cracks = false: it does not enter interfaces");
-    }
     let presses = |load: &&Load| matches!(load.kind, LoadKind::Pressure { in_cracks: Some(_), .. });
     if case.loads.iter().any(|load| presses(&load)) {
         context.error(

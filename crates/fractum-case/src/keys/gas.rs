@@ -24,7 +24,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("gas.viscosity", K::Quantity(D::VISCOSITY), "\"5e-5 Pa s\"", "Dynamic viscosity, > 0"),
     key("gas.wall_roughness", K::Quantity(D::LENGTH), "\"0 m\"", "Height of the asperities of crack walls, ≥ 0; 0 leaves laminar friction and choking"),
     key("gas.least_opening", K::Quantity(D::LENGTH), "\"10 um\"", "Opening of a crack whose walls have not moved since the start, > 0. It closes to less only under compression"),
-    key("gas.in_cracks", K::Flag, "true", "true: the gas enters the cracks that open to the holes. false: it pushes on the walls of the holes alone"),
+    key("gas.in_cracks", K::Flag, "true", "true: the gas enters the cracks and interfaces that open to the holes. false: it pushes on the walls of the holes alone"),
     key("gas.outside_pressure", K::Quantity(D::PRESSURE), "\"101325 Pa\"", "Pressure where cracks reach the surface, ≥ 0: gas leaks there, and nothing flows in"),
     key("gas.symmetry", K::Table, "", "Planes of symmetry at which the model ends: holes may end there, nothing leaks, and the gas is the share on this side; supports hold the solid there"),
     key("gas.symmetry.x", K::Quantity(D::LENGTH), "", "Position of the plane across x"),

@@ -124,6 +124,21 @@ impl CrackNetwork {
         self.cells_of[mouth].iter().map(|&cell| &self.cells[cell as usize])
     }
 
+    /// Outward facets of elements on the surface of the solids that are in no mouth.
+    pub fn outer_sides(&self, solid: &Solid) -> impl Iterator<Item = [u32; 3]> {
+        let elements = (0..self.beyond.len() as u32).map(|index| (index, self.body_and_element(index)));
+        let sides = elements.flat_map(|(index, (body, element))| {
+            (0..side_count(solid, body)).map(move |side| (index, body, element, side))
+        });
+        let outer = sides.filter(|&(index, body, element, side)| {
+            self.beyond[index as usize][side] == NONE && self.find_mouth(solid, body, element, side).is_none()
+        });
+        outer.map(|(_, body, element, side)| {
+            let [a, b, c] = inward_side(solid, body, element, side);
+            if b == c { [b, a, a] } else { [a, c, b] }
+        })
+    }
+
     /// Area of the mouths and of the walls of the cells that were reached from a mouth, without load [m²].
     pub fn wetted_area(&self, solid: &Solid, mouth: usize) -> f64 {
         let of_mouth = &self.mouths[mouth];

@@ -80,7 +80,7 @@ impl Frame {
         if !grid.rigid.is_empty() {
             whole.push((Population::Rigid, grid.rigid.file(scene)?));
         }
-        if let Some(gas) = scene.gas().filter(|gas| gas.cells().nth(gas.hole_count()).is_some()) {
+        if let Some(gas) = scene.gas().filter(|gas| gas.cells().any(|cell| cell.element().is_some())) {
             whole.push((Population::Gas, gas_cells::file(scene, gas)?));
         }
         if !scene.interfaces().is_empty() {

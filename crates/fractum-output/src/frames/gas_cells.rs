@@ -12,8 +12,8 @@ use crate::OutputError;
 /// Arrays that do not fit together.
 pub(crate) fn file(scene: &Scene, gas: &Gas) -> Result<PendingFile, OutputError> {
     let solid = &scene.solid;
-    let cells: Vec<(usize, u32, GasCell)> =
-        gas.cells().filter_map(|cell| cell.element.map(|(body, element)| (body, element, cell))).collect();
+    let of_crack = |cell: GasCell| cell.element().map(|(body, element)| (body, element, cell));
+    let cells: Vec<(usize, u32, GasCell)> = gas.cells().filter_map(of_crack).collect();
     let corners = |body: usize| solid.body(body).shape.node_count();
     let of_element = |body: usize, element: u32| &solid.body(body).elements[element as usize][..corners(body)];
     let mut nodes: Vec<u32> = cells.iter().flat_map(|&(body, element, _)| of_element(body, element)).copied().collect();

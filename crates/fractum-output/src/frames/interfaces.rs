@@ -1,13 +1,14 @@
 //! Interfaces between elements as faces for ParaView.
 
 use fractum_math::Vec3;
-use fractum_scene::{FaceReading, InterfaceFace, LiquidReading, Scene, liquid_of};
+use fractum_scene::{FaceReading, Gas, GasCell, GasRoom, InterfaceFace, LiquidReading, Scene, liquid_of};
 use fractum_vtk::{Compression, Field, PendingFile, PolyCells, PolyData};
 
 use crate::OutputError;
 
 /// The faces of interfaces beside elements that are left, without load and with the mean displacement of both sides: opening, slip, tractions, the share of
-/// the strength that is left, and the number of the interface; with liquid its pressure, the aperture and the part that is filled.
+/// the strength that is left, and the number of the interface; with liquid its pressure, the aperture and the part that is filled; with gas its pressure,
+/// temperature and opening.
 ///
 /// # Errors
 /// Arrays that do not fit together.
@@ -55,6 +56,17 @@ pub(crate) fn file(scene: &Scene) -> Result<PendingFile, OutputError> {
     if liquid_of(scene).is_some() {
         cell_data.extend(of_liquid.iter().map(|(name, values)| Field::scalar(name, values)));
     }
+    let of_gas: Vec<GasCell> =
+        scene.gas().into_iter().flat_map(Gas::cells).filter(|cell| matches!(cell.room, GasRoom::Face(_))).collect();
+    let of_gas = [
+        ("gas_pressure", (|cell| cell.pressure) as fn(&GasCell) -> f64),
+        ("gas_temperature", |cell| cell.temperature),
+        ("gas_opening", |cell| cell.opening),
+    ]
+    .map(|(name, of)| (name, readings.iter().filter_map(|&(face, _)| of_gas.get(face).map(of)).collect::<Vec<f64>>()));
+    cell_data.extend(
+        of_gas.iter().filter(|(_, values)| !values.is_empty()).map(|(name, values)| Field::scalar(name, values)),
+    );
     let point_data = [Field::vector("displacement", &displacement)];
     let time = Some(scene.clock.time);
     let data = PolyData { points: &points, cells, point_data: &point_data, cell_data: &cell_data, time };

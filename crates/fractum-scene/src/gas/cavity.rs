@@ -37,9 +37,13 @@ impl Cavity {
 
     /// The crack in a removed element: its volume without load, its characteristic length, and the least opening.
     pub(super) fn crack(volume: f64, length: f64, least_opening: f64) -> Self {
-        let area = volume / length;
+        Cavity { solid_volume: volume, ..Cavity::face(volume / length, least_opening) }
+    }
+
+    /// What is between the sides of a face of an interface: its area, and the least opening.
+    pub(super) fn face(area: f64, least_opening: f64) -> Self {
         let least = area * least_opening;
-        Cavity { solid_volume: volume, least, area, volume: least, share: 0.5, push: 0.0 }
+        Cavity { solid_volume: 0.0, least, area, volume: least, share: 0.5, push: 0.0 }
     }
 
     /// Takes over the volume u that the nodes enclose now.

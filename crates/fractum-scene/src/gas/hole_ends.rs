@@ -23,6 +23,11 @@ impl SymmetryPlanes {
         (0..3).any(|axis| self.0[axis].is_some_and(|plane| on(axis, plane)))
     }
 
+    /// The plane across an axis alone.
+    pub fn only(&self, axis: usize) -> Self {
+        SymmetryPlanes(std::array::from_fn(|a| self.0[a].filter(|_| a == axis)))
+    }
+
     /// A place moved onto all of the planes.
     fn project(&self, place: Vec3) -> Vec3 {
         Vec3::from_fn(|axis, _| self.0[axis].unwrap_or(place[axis]))
@@ -42,6 +47,8 @@ struct Rim {
     nodes: Vec<u32>,
     /// Whether it begins and ends at planes of symmetry; it closes over their common line then.
     is_open: bool,
+    /// These planes.
+    planes: SymmetryPlanes,
 }
 
 impl HoleEnds {
@@ -78,7 +85,9 @@ impl HoleEnds {
             } else if is_open(&[first]) || is_open(&[last]) {
                 return Err(last);
             }
-            ends.stemmed.push(Rim { nodes, is_open: !closed });
+            let holds = |axis: usize| [first, last].iter().any(|&node| planes.only(axis).hold(solid, &[node], size));
+            let held = SymmetryPlanes(std::array::from_fn(|axis| planes.0[axis].filter(|_| holds(axis))));
+            ends.stemmed.push(Rim { nodes, is_open: !closed, planes: held });
         }
         match ends.stemmed.iter().find(|rim| !ends.is_flat(solid, rim)) {
             Some(rim) => Err(rim.nodes[0]),
@@ -106,7 +115,7 @@ impl HoleEnds {
 
     /// A corner of an end: a node of its rim, or behind them the place where the planes of symmetry meet.
     fn corner(&self, rim: &Rim, index: usize, at: impl Fn(u32) -> Vec3) -> Vec3 {
-        rim.nodes.get(index).map_or_else(|| self.planes.project(at(rim.nodes[0])), |&node| at(node))
+        rim.nodes.get(index).map_or_else(|| rim.planes.project(at(rim.nodes[0])), |&node| at(node))
     }
 
     fn centre(&self, rim: &Rim, at: impl Fn(u32) -> Vec3 + Copy) -> Vec3 {

@@ -1,10 +1,11 @@
 //! Gas in holes and in the cracks that open to them: one network of cells, coupled with the solids at every step.
 //!
-//! A cell is a hole or a removed element of the [`CrackNetwork`]. The pressure of tⁿ acts on the walls; the work of these
+//! A cell is a hole, a face of an interface or a removed element of the [`CrackNetwork`]. The pressure of tⁿ acts on the walls; the work of these
 //! forces, in the two half steps beside tⁿ as that of all forces, is what the cells lose, so that the balance of solids
 //! and gas closes as that of the solids does. Between two such half works the gas flows for the time of the step.
 
 mod cavity;
+mod face_cells;
 mod hole_ends;
 mod measure;
 mod settings;
@@ -15,9 +16,11 @@ use fractum_math::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::facet::share_of_torn;
+use crate::interfaces::Interfaces;
 use crate::time_function::TimeFunction;
 use cavity::Cavity;
 pub(crate) use cavity::enclosed_volume;
+use face_cells::FaceCells;
 pub use hole_ends::{HoleEnds, SymmetryPlanes};
 pub use measure::GasMeasure;
 pub use settings::{Charge, GasHole, GasSettings, GasSource, Stemming};
@@ -41,20 +44,23 @@ struct Wall {
 /// Gas in holes and cracks.
 #[derive(Clone)]
 pub struct Gas {
+    /// With the holes and then the faces of interfaces as mouths.
     cracks: CrackNetwork,
     network: Network,
     holes: Vec<GasHole>,
+    faces: FaceCells,
     least_opening: f64,
     in_cracks: bool,
     symmetry: SymmetryPlanes,
-    /// Room of each cell: holes first, then those of the cracks in their order.
+    /// Room of each cell: holes first, then faces of interfaces, then those of the cracks in their order.
     cavities: Vec<Cavity>,
     volumes: Vec<f64>,
-    /// Out of holes with stemming first, then those of the cracks.
+    /// Out of holes with stemming first, then those of the faces, then those of the cracks.
     passages: Vec<Passage>,
-    /// Number of passages out of holes.
+    /// Number of passages out of holes, and of those that are not of cracks.
     vents: usize,
-    /// Facet of each passage, its normal pointing into the first cell.
+    fixed: usize,
+    /// Facet of each passage of a crack, its normal pointing into the first cell.
     facets: Vec<[u32; 3]>,
     walls: Vec<Wall>,
     /// Volume that the walls of each cell sweep per time, outwards [m³/s].
@@ -70,17 +76,30 @@ pub struct Gas {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct GasState {
     cracks: CrackNetworkState,
+    /// The hole that each face got gas from first.
+    from: Vec<Option<u32>>,
     contents: Contents,
     push: Vec<f64>,
     energy: f64,
     frequency_square: f64,
 }
 
+/// Where gas is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GasRoom {
+    /// In a hole, by its number.
+    Hole(usize),
+    /// Between the sides of a face of an interface, by its number.
+    Face(usize),
+    /// In a removed element, by body and element.
+    Element(usize, u32),
+}
+
 /// A cell of gas as results show it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GasCell {
-    /// Body and element of a crack; none for a hole.
-    pub element: Option<(usize, u32)>,
+    /// Where it is.
+    pub room: GasRoom,
     /// Pressure [Pa].
     pub pressure: f64,
     /// Temperature [K].
@@ -91,6 +110,13 @@ pub struct GasCell {
     pub volume: f64,
     /// Mass and internal energy.
     pub amount: Amount,
+}
+
+impl GasCell {
+    /// Body and element that was removed there; none of holes and interfaces.
+    pub fn element(&self) -> Option<(usize, u32)> {
+        if let GasRoom::Element(body, element) = self.room { Some((body, element)) } else { None }
+    }
 }
 
 impl Gas {
@@ -111,21 +137,22 @@ impl Gas {
             network.push_cell(amount);
             cavities.push(Cavity::hole(volume));
         }
-        let vents = (0..)
-            .zip(&holes)
-            .filter_map(|(cell, hole)| Some((hole.stemming?.passage(cell, f64::NEG_INFINITY), *hole.facets.first()?)));
-        let (passages, facets): (Vec<Passage>, Vec<[u32; 3]>) = vents.unzip();
+        let vents = (0..).zip(&holes).filter_map(|(cell, hole)| Some(hole.stemming?.passage(cell, f64::NEG_INFINITY)));
+        let passages: Vec<Passage> = vents.collect();
+        let mouths = holes.iter().map(|hole| hole.facets.clone()).collect();
         Gas {
-            cracks: CrackNetwork::new(solid, holes.iter().map(|hole| hole.facets.clone()).collect()),
+            cracks: CrackNetwork::new(solid, mouths),
             network,
             holes,
+            faces: FaceCells::default(),
             least_opening,
             in_cracks,
             symmetry,
             volumes: Vec::new(),
             vents: passages.len(),
+            fixed: passages.len(),
             passages,
-            facets,
+            facets: Vec::new(),
             walls: Vec::new(),
             swept: Vec::new(),
             wall_area: Vec::new(),
@@ -133,6 +160,26 @@ impl Gas {
             frequency_square: 0.0,
             cavities,
         }
+    }
+
+    /// Lets gas that enters cracks enter interfaces too, before its first step.
+    pub(crate) fn enter(&mut self, solid: &Solid, interfaces: &Interfaces) {
+        if !self.in_cracks || interfaces.is_empty() {
+            return;
+        }
+        self.faces = FaceCells::new(interfaces);
+        let Gas { cracks, network, holes, faces, cavities, passages, facets, .. } = self;
+        let of_holes = holes.iter().map(|hole| hole.facets.clone());
+        *cracks = CrackNetwork::new(solid, of_holes.chain(faces.sides.iter().map(|sides| sides.to_vec())).collect());
+        cavities.truncate(holes.len());
+        cavities.extend(faces.cavities(solid, self.least_opening));
+        network.truncate(holes.len());
+        faces.sides.iter().for_each(|_| network.push_cell(Amount::default()));
+        passages.truncate(self.vents);
+        passages.extend(faces.passages(solid, cracks, holes, self.symmetry));
+        facets.clear();
+        self.fixed = self.passages.len();
+        self.open(solid);
     }
 
     /// Volume of a hole without load [m³]; not positive where its facets are turned inside out or flat.
@@ -162,10 +209,15 @@ impl Gas {
         }
     }
 
+    /// The first cell of cracks.
+    fn first_of_cracks(&self) -> usize {
+        self.holes.len() + self.faces.sides.len()
+    }
+
     /// Cells and passages of the cracks that the network has reached since.
     fn add_cells(&mut self, solid: &Solid) {
-        let holes = self.holes.len();
-        for number in self.cavities.len() - holes..self.cracks.cells().len() {
+        let first = self.first_of_cracks();
+        for number in self.cavities.len() - first..self.cracks.cells().len() {
             let cell = self.cracks.cells()[number].clone();
             let (body, element) = (cell.body as usize, cell.element);
             let volume = solid.element_volume(body, element);
@@ -176,12 +228,12 @@ impl Gas {
                 let beyond = match side {
                     CrackSide::Mouth(mouth) => *mouth,
                     // The later one of two cells makes their passage.
-                    CrackSide::Cell(other) if (*other as usize) < number => holes as u32 + other,
+                    CrackSide::Cell(other) if (*other as usize) < number => first as u32 + other,
                     CrackSide::Outside if !self.symmetry.hold(solid, nodes, length) => Passage::OUTSIDE,
                     _ => continue,
                 };
                 let passage = self.passage(solid, number, *side, nodes);
-                self.passages.push(Passage { cells: [(holes + number) as u32, beyond], ..passage });
+                self.passages.push(Passage { cells: [(first + number) as u32, beyond], ..passage });
                 self.facets.push(*nodes);
             }
         }
@@ -204,11 +256,16 @@ impl Gas {
 
     /// Room of every cell and opening of every passage, as the nodes lie.
     fn update_rooms(&mut self, solid: &Solid) {
-        let Gas { cracks, holes, cavities, volumes, passages, vents, .. } = self;
-        let (of_holes, of_cracks) = cavities.split_at_mut(holes.len());
+        let first = self.first_of_cracks();
+        let Gas { cracks, holes, faces, cavities, volumes, passages, vents, .. } = self;
+        let (of_holes, rest) = cavities.split_at_mut(holes.len());
+        let (of_faces, of_cracks) = rest.split_at_mut(faces.sides.len());
         for (cavity, hole) in of_holes.iter_mut().zip(&*holes) {
             let at = |node: u32| solid.position(node as usize);
             cavity.enclose(enclosed_volume(solid, &hole.facets, &hole.ends, at));
+        }
+        for (face, cavity) in of_faces.iter_mut().enumerate() {
+            cavity.enclose(faces.enclosed(solid, face));
         }
         for (cavity, cell) in of_cracks.iter_mut().zip(cracks.cells()) {
             cavity.enclose(cracks::present_volume(solid, cell.body as usize, cell.element));
@@ -216,6 +273,10 @@ impl Gas {
         volumes.clear();
         volumes.extend(cavities.iter().map(|cavity| cavity.volume));
         for passage in &mut passages[*vents..] {
+            let is_shut = |cell: usize| (holes.len()..first).contains(&cell) && !faces.is_open[cell - holes.len()];
+            if passage.cells.iter().any(|cell| is_shut(*cell as usize)) {
+                continue;
+            }
             let [one, other] = passage.cells.map(|cell| cavities.get(cell as usize).map(Cavity::opening));
             let (one, other) = (one.unwrap_or(f64::INFINITY), other.unwrap_or(f64::INFINITY));
             // Two halves one behind the other: as tight as the tighter one makes them.
@@ -225,7 +286,8 @@ impl Gas {
 
     /// Walls with their present areas: of the holes, then of the cracks.
     fn find_walls(&mut self, solid: &Solid) {
-        let Gas { cracks, holes, walls, wall_area, cavities, .. } = self;
+        let first = self.first_of_cracks();
+        let Gas { cracks, holes, faces, walls, wall_area, cavities, .. } = self;
         walls.clear();
         wall_area.clear();
         wall_area.resize(cavities.len(), 0.0);
@@ -236,12 +298,13 @@ impl Gas {
             wall_area[cell] += area.norm();
             walls.push(Wall { cell: cell as u32, nodes: *nodes, area });
         };
-        for (hole, mouth) in cracks.mouths().iter().enumerate() {
+        let is_open = |cell: usize| cell.checked_sub(holes.len()).is_none_or(|face| faces.is_open[face]);
+        for (cell, mouth) in cracks.mouths().iter().enumerate().filter(|(cell, _)| is_open(*cell)) {
             let live = mouth.facets.iter().zip(&mouth.live).filter(|(_, live)| **live);
-            live.for_each(|(nodes, _)| add(hole, nodes));
+            live.for_each(|(nodes, _)| add(cell, nodes));
         }
         for (number, cell) in cracks.cells().iter().enumerate() {
-            cell.walls().for_each(|nodes| add(holes.len() + number, nodes));
+            cell.walls().for_each(|nodes| add(first + number, nodes));
         }
     }
 
@@ -258,7 +321,7 @@ impl Gas {
     /// Brings the gas to tⁿ and adds its forces to the nodes.
     ///
     /// - `elapsed`: time since the forces were last computed [s]
-    pub(crate) fn add_forces(&mut self, solid: &mut Solid, time: f64, elapsed: f64) {
+    pub(crate) fn add_forces(&mut self, solid: &mut Solid, interfaces: &Interfaces, time: f64, elapsed: f64) {
         for (cell, hole) in self.holes.iter().enumerate() {
             if let Some(source) = &hole.source {
                 let rate = |of: &TimeFunction| of(time - 0.5 * elapsed, &Vec3::zeros()) * elapsed;
@@ -268,8 +331,10 @@ impl Gas {
         let stemmed = (0..).zip(&self.holes).filter_map(|(cell, hole)| Some(hole.stemming?.passage(cell, time)));
         self.passages.iter_mut().zip(stemmed).for_each(|(passage, now)| *passage = now);
         self.exchange_across_facets(solid, elapsed);
+        self.faces.look(interfaces);
         self.update_rooms(solid);
         self.network.flow(elapsed, &self.volumes, &self.passages);
+        self.trace();
         self.find_walls(solid);
         self.find_swept(solid);
         for (cell, cavity) in self.cavities.iter_mut().enumerate() {
@@ -298,7 +363,7 @@ impl Gas {
     /// A facet between two removed elements moves with its nodes: what one of them loses in volume the other one gains, and
     /// the gas on one side does work on that on the other.
     fn exchange_across_facets(&mut self, solid: &Solid, elapsed: f64) {
-        for (passage, nodes) in self.passages.iter().zip(&self.facets) {
+        for (passage, nodes) in self.passages[self.fixed..].iter().zip(&self.facets) {
             let [own, other] = passage.cells.map(|cell| cell as usize);
             let Some(beyond) = self.cavities.get(other) else { continue };
             let push = self.cavities[own].push.min(beyond.push);
@@ -344,13 +409,35 @@ impl Gas {
         [self.energy, contents.supplied.energy, contents.leaked.energy]
     }
 
-    /// The cells: holes first, then those of the cracks in the order in which they were reached.
+    /// Finds the hole from which faces have got gas first.
+    fn trace(&mut self) {
+        let Gas { network, faces, holes, passages, vents, .. } = self;
+        let face_of = |cell: u32| (cell as usize).checked_sub(holes.len()).filter(|face| *face < faces.sides.len());
+        for [a, b] in passages[*vents..].iter().map(|passage| passage.cells) {
+            for [cell, other] in [[a, b], [b, a]] {
+                let Some(face) = face_of(cell).filter(|face| faces.from[*face].is_none()) else { continue };
+                if network.contents().cells[cell as usize].mass > 0.0 {
+                    let known = face_of(other).and_then(|face| faces.from[face]);
+                    faces.from[face] = if (other as usize) < holes.len() { Some(other) } else { known };
+                }
+            }
+        }
+    }
+
+    /// The cells: holes first, then faces of interfaces, then those of the cracks in the order in which they were reached.
     pub fn cells(&self) -> impl Iterator<Item = GasCell> {
-        let holes = self.holes.len();
+        let (holes, first) = (self.holes.len(), self.first_of_cracks());
         self.cavities.iter().enumerate().map(move |(index, cavity)| {
-            let of = index.checked_sub(holes).map(|number| &self.cracks.cells()[number]);
+            let of_crack = |number: usize| {
+                let cell = &self.cracks.cells()[number];
+                GasRoom::Element(cell.body as usize, cell.element)
+            };
             GasCell {
-                element: of.map(|cell| (cell.body as usize, cell.element)),
+                room: match index {
+                    hole if hole < holes => GasRoom::Hole(hole),
+                    face if face < first => GasRoom::Face(face - holes),
+                    cell => of_crack(cell - first),
+                },
                 // After a step half of its work is already out of the gas: the pressure of tⁿ is that on the walls.
                 pressure: cavity.push / cavity.share,
                 temperature: self.network.temperature(index, cavity.volume),
@@ -376,14 +463,17 @@ impl Gas {
         self.network.contents().leaked
     }
 
-    /// Area of the walls of a hole and of the cracks that were reached from it, without load [m²].
+    /// Area of the walls of a hole, and of the interfaces and cracks that were reached from it, without load [m²].
     pub fn wetted_area(&self, solid: &Solid, hole: usize) -> f64 {
-        self.cracks.wetted_area(solid, hole)
+        let from_hole = (self.holes.len()..).zip(&self.faces.from).filter(|(_, from)| **from == Some(hole as u32));
+        let of_faces = from_hole.map(|(mouth, _)| self.cracks.wetted_area(solid, mouth));
+        self.cracks.wetted_area(solid, hole) + of_faces.sum::<f64>()
     }
 
     pub(crate) fn state(&self) -> GasState {
         GasState {
             cracks: self.cracks.state(),
+            from: self.faces.from.clone(),
             contents: self.network.contents().clone(),
             push: self.cavities.iter().map(|cavity| cavity.push).collect(),
             energy: self.energy,
@@ -395,6 +485,7 @@ impl Gas {
     pub(crate) fn restore(&mut self, solid: &Solid, state: GasState) {
         self.cracks.restore(solid, &state.cracks);
         self.add_cells(solid);
+        self.faces.from = state.from;
         self.update_rooms(solid);
         self.network.restore(state.contents);
         self.cavities.iter_mut().zip(state.push).for_each(|(cavity, push)| cavity.push = push);

@@ -92,6 +92,16 @@ impl Interfaces {
         mean
     }
 
+    /// Whether gas comes between the sides of a face: they were never joined, have begun to break, or one of them has left.
+    pub(crate) fn lets_in(&self, face: usize) -> bool {
+        let begun = |&(cluster, point): &(u32, u32)| {
+            self.clusters[cluster as usize].points[point as usize].state.residual < 1.0
+        };
+        self.areas[face] == 0.0
+            || !self.kinds[self.faces[face].kind as usize].law.is_bonded()
+            || self.points_of[face].iter().flatten().any(begun)
+    }
+
     /// The element beside the face whose sides have slid farthest, and how far over the length of its first edge.
     pub(crate) fn farthest_slip(&self, solid: &Solid) -> Option<((u32, u32), f64)> {
         let slid = |(index, face): (usize, &InterfaceFace)| {

@@ -19,6 +19,7 @@ pub(crate) use release::Release;
 use super::{DrivenPoints, Points};
 use crate::error::SceneError;
 use crate::gas::{Gas, GasState};
+use crate::interfaces::Interfaces;
 
 /// A force from outside.
 #[derive(Clone, Debug)]
@@ -151,6 +152,13 @@ impl Loads {
         self.cracks = Some(cracks);
     }
 
+    /// Lets gas that enters cracks enter interfaces too, before the first step.
+    pub(crate) fn enter_interfaces(&mut self, solid: &Solid, interfaces: &Interfaces) {
+        if let Some(gas) = &mut self.gas {
+            gas.enter(solid, interfaces);
+        }
+    }
+
     /// Goes on after the loads of the stage before: its gas is that of this stage too, and so are the forces of who drives the
     /// scene, which act until they are set anew.
     pub(crate) fn follow(&mut self, before: Loads, solid: &Solid) {
@@ -204,9 +212,9 @@ impl Loads {
     }
 
     /// Brings the gas to tⁿ and adds its forces, see [`Gas::add_forces`].
-    pub(crate) fn add_gas_forces(&mut self, solid: &mut Solid, time: f64, elapsed: f64) {
+    pub(crate) fn add_gas_forces(&mut self, solid: &mut Solid, interfaces: &Interfaces, time: f64, elapsed: f64) {
         if let Some(gas) = &mut self.gas {
-            gas.add_forces(solid, time, elapsed);
+            gas.add_forces(solid, interfaces, time, elapsed);
         }
     }
 
