@@ -206,6 +206,7 @@ fn nothing_conducts_through_a_solid_that_has_left() {
         let heat = HeatSettings {
             solids: vec![thermal; 2],
             bonded: Vec::new(),
+            interfaces: Vec::new(),
             packing: PackingConduction::Table,
             initial: Arc::new(|_, x| 300.0 + 1e3 * x.z),
             stress_free: 300.0,
@@ -218,7 +219,7 @@ fn nothing_conducts_through_a_solid_that_has_left() {
             at_rest: false,
             unstressed: false,
         };
-        let heat = Heat::new(&mut solid, &mut Bonded::default(), heat).unwrap();
+        let heat = Heat::new(&mut solid, &mut Bonded::default(), &fractum_scene::Interfaces::default(), heat).unwrap();
         let (loads, supports) = (Loads::new(Vec::new(), 0), Supports::new(Vec::new(), &solid.reference).unwrap());
         Scene::new(solid, supports, loads, debris, Vec::new(), &[], settings(0.02, 1e-2))
             .with_heat(heat, false)

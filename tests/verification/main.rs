@@ -12,6 +12,7 @@ mod fracture_balance;
 mod gas;
 mod gas_interfaces;
 mod inside_pressure;
+mod interface_heat;
 mod interface_path;
 mod interfaces;
 mod laws;

@@ -32,7 +32,7 @@ impl Scene {
     pub fn restore_heat(&mut self, state: Option<HeatState>) {
         let Scene { optional, solid, bonded, .. } = self;
         if let (Some(heat), Some(state)) = (&mut optional.heat, state) {
-            heat.restore(solid, bonded, state);
+            heat.restore(solid, bonded, &optional.interfaces, state);
         }
     }
 
@@ -45,7 +45,11 @@ impl Scene {
         let target = time + self.clock.dt_after;
         let Scene { optional, solid, bonded, .. } = self;
         let Some(heat) = &mut optional.heat else { return Ok(()) };
-        heat.conduct_to(target, solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })?;
+        heat.conduct_to(target, solid, bonded, &optional.interfaces).map_err(|reason| StepError::Heat {
+            step,
+            time,
+            reason,
+        })?;
         let dt = equal_steps(heat.step_size(), self.settings.time_step.end - target);
         self.clock.advance(dt);
         Ok(())
@@ -71,7 +75,7 @@ pub(crate) fn conduct(scene: &mut Scene, dt: f64, passed: &mut impl FnMut(Phase)
     let Scene { optional, solid, bonded, .. } = scene;
     let Some(heat) = &mut optional.heat else { return Ok(0.0) };
     passed(Phase::Motion);
-    let conducted = heat.conduct_for([time, target, end], solid, bonded);
+    let conducted = heat.conduct_for([time, target, end], solid, bonded, &optional.interfaces);
     let conducted = conducted.map_err(|reason| StepError::Heat { step, time, reason })?;
     let work = heat.expand(target, solid, bonded);
     if conducted || heat.expands() {
@@ -86,7 +90,11 @@ pub(crate) fn warm_to(scene: &mut Scene, target: f64) -> Result<(), StepError> {
     let (step, time) = (scene.clock.step, scene.clock.time);
     let Scene { optional, solid, bonded, .. } = scene;
     let Some(heat) = &mut optional.heat else { return Ok(()) };
-    heat.warm_to([time, target], solid, bonded).map_err(|reason| StepError::Heat { step, time, reason })
+    heat.warm_to([time, target], solid, bonded, &optional.interfaces).map_err(|reason| StepError::Heat {
+        step,
+        time,
+        reason,
+    })
 }
 
 /// Takes the temperatures of an equilibrium at a time; returns half of the work of its expansion, at the stresses of the one before [J].
@@ -94,7 +102,11 @@ pub(crate) fn settle_heat(scene: &mut Scene, target: f64) -> Result<f64, StepErr
     let (step, time, first) = (scene.clock.step, scene.clock.time, is_first(scene));
     let Scene { optional, solid, bonded, .. } = scene;
     let Some(heat) = &mut optional.heat else { return Ok(0.0) };
-    heat.settle(target, solid, bonded, first).map_err(|reason| StepError::Heat { step, time, reason })
+    heat.settle(target, solid, bonded, &optional.interfaces, first).map_err(|reason| StepError::Heat {
+        step,
+        time,
+        reason,
+    })
 }
 
 /// The other half, at the stresses of the equilibrium [J].

@@ -50,6 +50,7 @@ pub(super) fn with_heat(
     let settings = HeatSettings {
         solids,
         bonded,
+        interfaces: case.interfaces.iter().map(|own| own.heat_transfer.as_ref().map(|own| own.value)).collect(),
         packing: heat.packing,
         stress_free: heat.stress_free.unwrap_or_else(|| initial.at(Default::default())),
         initial: std::sync::Arc::new(move |_, place: &Vec3| initial.at(*place)),
@@ -62,7 +63,8 @@ pub(super) fn with_heat(
         at_rest: case.solver.kind == SolverKind::Static,
         unstressed: case.solver.kind == SolverKind::Static && case.in_situ.is_none(),
     };
-    match Heat::new(&mut scene.solid, &mut scene.bonded, settings) {
+    let interfaces = scene.interfaces().clone();
+    match Heat::new(&mut scene.solid, &mut scene.bonded, &interfaces, settings) {
         Ok(made) => {
             check_heat_step(context, heat, &made);
             Some(scene.with_heat(made, alone))

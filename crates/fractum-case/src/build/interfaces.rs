@@ -166,18 +166,16 @@ pub(super) fn check(context: &mut Context<'_>) {
     let case = context.case;
     let Some(first) = case.interfaces.first() else { return };
     let place = first.place.clone();
-    match case.solver.kind {
-        SolverKind::Modes => context.error(&place, "with solver.kind = \"modes\"", "solids without interfaces"),
-        SolverKind::Heat => {
-            context.error(&place, "with solver.kind = \"heat\"", "solids without interfaces: heat alone moves nothing")
-        }
-        _ => {}
+    if case.solver.kind == SolverKind::Modes {
+        context.error(&place, "with solver.kind = \"modes\"", "solids without interfaces");
     }
     if case.solver.subcycling.is_some() {
         context.error(&place, "with solver.subcycling", "one step for all elements; remove subcycling");
     }
-    if case.flows.heat.is_some() {
-        context.error(&place, "with [heat]", "solids without heat: none flows across interfaces");
+    if case.flows.heat.is_none() {
+        for transfer in case.interfaces.iter().filter_map(|interface| interface.heat_transfer.as_ref()) {
+            context.error(&transfer.place, "without [heat]", "a [heat] table, or no heat_transfer");
+        }
     }
     check_cracks(context, &place);
     if context.exchange.is_some() || context.division.is_some() {

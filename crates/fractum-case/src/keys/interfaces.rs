@@ -29,6 +29,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("interfaces[].pressure", K::TimeFunction(D::PRESSURE), "", "Pressure of what is between the sides, which pushes them apart; friction and strength feel what is left of the pressure of the sides"),
     key("interfaces[].pressure_in", K::Choice(pressure_in), "\"everywhere\"", "Where that pressure acts: everywhere, or by the share of the strength that is lost (broken)"),
     key("interfaces[].dilation_slip", K::Quantity(D::LENGTH), "no end", "Slip beyond which they rise no further, > 0"),
+    key("interfaces[].heat_transfer", K::Quantity(D::HEAT_TRANSFER), "a hundred times that of an element", "With [heat]: coefficient of heat transfer from one side to the other where they are joined or touch, > 0; none passes where they have parted"),
 ];
 
 fn mixed_modes() -> Vec<&'static str> {

@@ -19,6 +19,8 @@ pub struct Interface {
     pub stiffness: Option<[f64; 2]>,
     /// Pressure of what is between its sides [Pa], and whether it acts where the strength is lost alone.
     pub pressure: Option<(Spanned<TimeFunction>, bool)>,
+    /// Coefficient of heat transfer where its sides touch [W/(m² K)]; none where it resists nothing to speak of.
+    pub heat_transfer: Option<Spanned<f64>>,
 }
 
 /// The faces of an interface.

@@ -93,6 +93,7 @@ impl Case {
             law,
             stiffness: None,
             pressure: None,
+            heat_transfer: None,
         });
         // Expressions read earlier probes only.
         self.probes.truncate(load + 1);

@@ -45,10 +45,12 @@ fn interface(table: Table<'_>, number: usize) -> Option<Interface> {
     let stiffness = normal.zip(shear).map(|(normal, shear)| Some([normal?, shear?]));
     let is_firm = law.zip(stiffness).map(|(law, stiffness)| stiffness.is_none_or(|own| is_firm(&table, law, own)));
     let pressure = pressure(&table);
+    let heat_transfer = table.quantity("heat_transfer").physical().spanned().map(Some).or_if_absent(None);
     let place = table.place.clone();
     table.finish("here");
     let law = law.filter(|_| is_firm == Some(true));
-    Some(Interface { name, place, along: along?, law: law?, stiffness: stiffness?, pressure: pressure? })
+    let (along, law, stiffness, pressure) = (along?, law?, stiffness?, pressure?);
+    Some(Interface { name, place, along, law, stiffness, pressure, heat_transfer: heat_transfer? })
 }
 
 /// Pressure inside, and whether it acts where the strength is lost alone.

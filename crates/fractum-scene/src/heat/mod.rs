@@ -1,5 +1,6 @@
 //! Heat in solids and bonded bodies: one field of temperature over nodes and particles, which expands both.
 
+mod across;
 mod expansion;
 mod measure;
 mod pairs;
@@ -11,7 +12,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::bonded::Bonded;
 use crate::error::SceneError;
+use crate::interfaces::Interfaces;
 use crate::time_function::TimeFunction;
+use across::Contacts;
 use expansion::Expansion;
 pub use measure::{HeatMeasure, TemperatureTake};
 use pairs::Pairs;
@@ -38,6 +41,8 @@ pub struct HeatSettings {
     pub solids: Vec<ThermalMaterial>,
     /// Of the bonded bodies, in their order.
     pub bonded: Vec<ThermalMaterial>,
+    /// Coefficient of heat transfer of the interfaces of each kind where their sides touch [W/(m² K)]; none where they resist nothing to speak of.
+    pub interfaces: Vec<Option<f64>>,
     /// How particles conduct.
     pub packing: PackingConduction,
     /// Temperature at t = 0 [K].
@@ -104,11 +109,17 @@ impl Heat {
     ///
     /// # Errors
     /// [`SceneError::PackingConduction`] where the conductivity of a packing was not found.
-    pub fn new(solid: &mut Solid, bonded: &mut Bonded, settings: HeatSettings) -> Result<Self, SceneError> {
+    pub fn new(
+        solid: &mut Solid,
+        bonded: &mut Bonded,
+        interfaces: &Interfaces,
+        settings: HeatSettings,
+    ) -> Result<Self, SceneError> {
         let HeatSettings { solids, bonded: of_bonded, packing, initial, stress_free, conditions, .. } = settings;
         let nodes = solid.reference.len();
         let places = [solid.reference.as_slice(), bonded.reference()].concat();
-        let pairs = Pairs::new(solid, bonded, &solids, &of_bonded, packing)?;
+        let contacts = Contacts::new(solid, interfaces, &solids, &settings.interfaces);
+        let pairs = Pairs::new(solid, bonded, contacts, &solids, &of_bonded, packing)?;
         let network = HeatNetwork::new(pairs.capacity(solid, bonded), pairs.pairs(), pairs.conductances());
         let start = places.iter().map(|place| initial(0.0, place)).collect();
         let field = HeatField::new(network, places, start, conditions);
@@ -187,11 +198,18 @@ impl Heat {
     }
 
     /// Puts a saved state back, once the bodies have theirs.
-    pub(crate) fn restore(&mut self, solid: &mut Solid, bonded: &mut Bonded, state: HeatState) {
+    pub(crate) fn restore(
+        &mut self,
+        solid: &mut Solid,
+        bonded: &mut Bonded,
+        interfaces: &Interfaces,
+        state: HeatState,
+    ) {
         self.field.restore(state.field);
         if let (Some(expansion), Some(state)) = (&mut self.expansion, state.expansion) {
             expansion.restore(solid, bonded, self.field.temperature(), state);
         }
+        self.pairs.look(solid, interfaces);
         self.find_conductances(solid, bonded);
     }
 }

@@ -1,4 +1,4 @@
-//! Who conducts heat to whom: edges of elements, and bonds.
+//! Who conducts heat to whom: edges of elements, sides of interfaces that touch, and bonds.
 
 use std::fmt::Display;
 
@@ -7,8 +7,10 @@ use fractum_heat::{HeatNetwork, PackedSphere, effective_conductivity};
 use fractum_math::Vec3;
 
 use super::ThermalMaterial;
+use super::across::Contacts;
 use crate::bonded::{Bonded, BondedBody};
 use crate::error::SceneError;
+use crate::interfaces::Interfaces;
 
 /// How the particles of a bonded body conduct.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,6 +42,9 @@ pub(super) struct Pairs {
     conductances: Vec<f64>,
     /// What each element gives to its pairs, body by body and element by element.
     parts: Vec<(u32, f64)>,
+    /// Sides of interfaces, and the pair of each corner.
+    contacts: Contacts,
+    across: Vec<u32>,
     /// Conductances of the bonds, body by body, and the first pair that is a bond.
     bonds: Vec<f64>,
     first_bond: usize,
@@ -55,6 +60,7 @@ impl Pairs {
     pub(super) fn new(
         solid: &Solid,
         bonded: &Bonded,
+        contacts: Contacts,
         solids: &[ThermalMaterial],
         of_bonded: &[ThermalMaterial],
         packing: PackingConduction,
@@ -66,15 +72,18 @@ impl Pairs {
                 all.extend(own.map(|([i, j], g)| ([i.min(j), i.max(j)], g * material.conductivity)));
             }
         }
-        let mut pairs: Vec<[u32; 2]> = all.iter().map(|(pair, _)| *pair).collect();
+        let mut pairs: Vec<[u32; 2]> = all.iter().map(|(pair, _)| *pair).chain(contacts.pairs()).collect();
         pairs.sort_unstable();
         pairs.dedup();
         let place = |pair: &[u32; 2]| pairs.binary_search(pair).unwrap_or_default() as u32;
         let parts = all.iter().map(|(pair, g)| (place(pair), *g)).collect();
+        let across = contacts.pairs().map(|pair| place(&pair)).collect();
         let (first_bond, nodes) = (pairs.len(), solid.reference.len() as u32);
         let mut found = Pairs {
             conductances: Vec::new(),
             parts,
+            contacts,
+            across,
             bonds: Vec::new(),
             first_bond,
             broken: usize::MAX,
@@ -172,7 +181,12 @@ impl Pairs {
         self.broken != bonded.bond_counts().1
     }
 
-    /// Finds the conductances from the elements and bonds that are left; nothing conducts through a crack.
+    /// Looks which sides of interfaces touch; whether any has met or parted.
+    pub(super) fn look(&mut self, solid: &Solid, interfaces: &Interfaces) -> bool {
+        self.contacts.look(solid, interfaces)
+    }
+
+    /// Finds the conductances from the elements, sides of interfaces and bonds that are left; nothing conducts through a crack.
     pub(super) fn update(&mut self, solid: &Solid, bonded: &Bonded) {
         self.conductances.fill(0.0);
         let mut parts = self.parts.iter();
@@ -183,6 +197,9 @@ impl Pairs {
                     self.conductances[*pair as usize] += if *alive { *g } else { 0.0 };
                 }
             }
+        }
+        for (pair, conductance) in self.across.iter().zip(self.contacts.conductances()) {
+            self.conductances[*pair as usize] += conductance;
         }
         let mut bond = 0;
         for body in bonded.bodies() {

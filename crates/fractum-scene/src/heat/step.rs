@@ -4,14 +4,22 @@ use fractum_fem::Solid;
 
 use super::Heat;
 use crate::bonded::Bonded;
+use crate::interfaces::Interfaces;
 
 /// Relative difference of two times that is rounding.
 pub(super) const SAME_TIME: f64 = 1e-9;
 
 impl Heat {
     /// Advances temperatures to a time [s] in equal steps of at most the stable one.
-    pub(crate) fn conduct_to(&mut self, time: f64, solid: &Solid, bonded: &Bonded) -> Result<(), String> {
-        if self.stale || self.pairs.has_lost_bonds(bonded) {
+    pub(crate) fn conduct_to(
+        &mut self,
+        time: f64,
+        solid: &Solid,
+        bonded: &Bonded,
+        interfaces: &Interfaces,
+    ) -> Result<(), String> {
+        let changed = self.pairs.look(solid, interfaces);
+        if self.stale || changed || self.pairs.has_lost_bonds(bonded) {
             self.find_conductances(solid, bonded);
         }
         let start = self.field.time();
@@ -51,6 +59,7 @@ impl Heat {
         [time, target, end]: [f64; 3],
         solid: &mut Solid,
         bonded: &Bonded,
+        interfaces: &Interfaces,
     ) -> Result<bool, String> {
         let own = self.field.time();
         let Some(expansion) = &self.expansion else {
@@ -58,13 +67,13 @@ impl Heat {
             if waits && target < end * (1.0 - SAME_TIME) {
                 return Ok(false);
             }
-            return self.conduct_to(target, solid, bonded).map(|()| true);
+            return self.conduct_to(target, solid, bonded, interfaces).map(|()| true);
         };
         if !expansion.ends_before(target) {
             return Ok(false);
         }
         let ahead = (own + self.step).min(end).max(target);
-        self.conduct_to(ahead, solid, bonded)?;
+        self.conduct_to(ahead, solid, bonded, interfaces)?;
         if let Some(expansion) = &mut self.expansion {
             expansion.begin([time, ahead], solid, self.field.temperature());
         }
@@ -85,6 +94,7 @@ impl Heat {
         [time, target]: [f64; 2],
         solid: &mut Solid,
         bonded: &Bonded,
+        interfaces: &Interfaces,
     ) -> Result<(), String> {
         if self.expansion.is_none() {
             return Ok(());
@@ -92,7 +102,7 @@ impl Heat {
         // A shorter step than was tried finds its temperatures between those of the longer one.
         let is_new = target > self.field.time() * (1.0 + SAME_TIME);
         if is_new {
-            self.conduct_to(target, solid, bonded)?;
+            self.conduct_to(target, solid, bonded, interfaces)?;
         }
         if let Some(expansion) = &mut self.expansion {
             if is_new {
@@ -111,11 +121,12 @@ impl Heat {
         time: f64,
         solid: &mut Solid,
         bonded: &mut Bonded,
+        interfaces: &Interfaces,
         first: bool,
     ) -> Result<f64, String> {
         match &mut self.expansion {
             Some(expansion) => Ok(expansion.settle(solid, bonded, first)),
-            None => self.conduct_to(time, solid, bonded).map(|()| 0.0),
+            None => self.conduct_to(time, solid, bonded, interfaces).map(|()| 0.0),
         }
     }
 

@@ -52,6 +52,12 @@ impl InterfaceFace {
         if self.sides[0][1] == self.sides[0][2] { 2 } else { 3 }
     }
 
+    /// Length of its first edge without load [m].
+    pub(crate) fn length(&self, solid: &Solid) -> f64 {
+        let [a, b, _] = self.sides[0].map(|node| solid.reference[node as usize]);
+        (b - a).norm()
+    }
+
     /// Rows: normal, direction of the first edge, and across both; and twice the area, or the length of an edge.
     fn frame(&self, place: impl Fn(u32) -> Vec3) -> (Mat3, f64) {
         let middle = |corner: usize| (place(self.sides[0][corner]) + place(self.sides[1][corner])) * 0.5;

@@ -9,6 +9,8 @@ use super::{InterfaceFace, InterfaceKind, Interfaces, Point};
 
 /// Share of the strength that is left where an interface counts as broken.
 const BROKEN: f64 = 0.02;
+/// Opening over the length of a face up to which sides that nothing joins touch.
+const TOUCHING: f64 = 1e-6;
 
 /// Everything about interfaces that changes in a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -102,11 +104,19 @@ impl Interfaces {
             || self.points_of[face].iter().flatten().any(begun)
     }
 
+    /// Whether the sides of a face touch at a corner: they are joined, or nothing is between them.
+    pub(crate) fn touches(&self, solid: &Solid, face: usize, corner: usize) -> bool {
+        let Some((cluster, point)) = self.points_of[face][corner] else { return false };
+        let point = &self.clusters[cluster as usize].points[point as usize];
+        let own = &self.faces[face];
+        let joined = self.kinds[own.kind as usize].law.is_bonded() && !is_broken(point);
+        joined || point.local(point.jump).x <= TOUCHING * own.length(solid)
+    }
+
     /// The element beside the face whose sides have slid farthest, and how far over the length of its first edge.
     pub(crate) fn farthest_slip(&self, solid: &Solid) -> Option<((u32, u32), f64)> {
         let slid = |(index, face): (usize, &InterfaceFace)| {
-            let [a, b, _] = face.sides[0].map(|node| solid.reference[node as usize]);
-            (face.elements[0], self.reading(index).slip.norm() / (b - a).norm())
+            (face.elements[0], self.reading(index).slip.norm() / face.length(solid))
         };
         self.faces.iter().enumerate().map(slid).max_by(|a, b| a.1.total_cmp(&b.1))
     }
