@@ -72,7 +72,8 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
     let damage = solid.has_damage();
     let heats = context.case.flows.heat.is_some();
     let bonded = context.case.interfaces.iter().any(|interface| interface.law.is_bonded());
-    let opens = bonded && context.case.flows.liquid.is_none() && options.no_equilibrium == NoEquilibrium::Stop;
+    let flows = context.case.flows.liquid.is_some() || heats;
+    let opens = bonded && !flows && options.no_equilibrium == NoEquilibrium::Stop;
     let way_counts = damage || heats || !context.case.interfaces.is_empty() || turns_back(context);
     let whole = if way_counts { (solver.end - solver.begin) / STEPS } else { solver.end };
     let opening = options.opening.as_ref().map(|opening| statics::Opening {
@@ -89,7 +90,7 @@ fn static_settings(context: &mut Context<'_>, solid: &Solid, numbering: &Numberi
             Some(Control::Path | Control::Opening) => statics::Control::Path,
             // Heat does not flow back along a path.
             None if damage && !heats => statics::Control::Path,
-            // Liquid flows in time, and a scene that may move does so instead.
+            // Liquid and heat flow in time, and a scene that may move does so instead.
             None if opens => statics::Control::TimeThenPath,
             None => statics::Control::Time,
         },

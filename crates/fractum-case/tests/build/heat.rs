@@ -1,9 +1,14 @@
 //! Heat on the parts of a body.
 
+use std::path::Path;
+
+use fractum_case::build::{build_scene, cut_mesh};
+use fractum_case::parse_case;
 use fractum_math::Vec3;
 use fractum_mesh::Group;
 use fractum_mesh::generate::structured_box;
 use fractum_scene::HeatMeasure;
+use fractum_scene::statics::Control;
 
 use crate::build;
 
@@ -53,4 +58,43 @@ fn a_source_heats_the_volume_of_its_elements_and_no_other() {
     ] {
         assert!((power(on) / (1e6 * volume) - 1.0).abs() < 1e-12, "{on}: {} W", power(on));
     }
+}
+
+const INTERFACE: &str = r#"
+[[interfaces]]
+between = ["left", "right"]
+tensile_strength = "2 MPa"
+fracture_energy = "50 J/m^2"
+heat_transfer = "100 W/(m^2 K)"
+[[supports]]
+where = "x < 1 mm"
+fix = "xyz"
+"#;
+
+/// Control of a bar in two parts that a bond joins, or what is wrong with it.
+fn bar_of_two_parts(case: &str) -> Result<Option<Control>, String> {
+    let mut mesh = structured_box([8, 2, 2], Vec3::new(0.4, 0.1, 0.1), None);
+    let middle = |nodes: &[u32; 4]| nodes.iter().map(|&n| mesh.nodes[n as usize].x).sum::<f64>() / 4.0;
+    for (tag, name, is_left) in [(2, "left", true), (3, "right", false)] {
+        let own = (0u32..).zip(&mesh.tetrahedra).filter(|(_, nodes)| (middle(nodes) < 0.1) == is_left);
+        let tetrahedra = own.map(|(element, _)| element).collect();
+        let group = Group { name: name.into(), dimension: 3, tag, tetrahedra, ..Group::default() };
+        mesh.groups.push(group);
+    }
+    let case = parse_case(case, Path::new("case.toml"), &[]).map_err(|error| error.to_string())?;
+    cut_mesh(&case, &mut mesh).unwrap();
+    let built = build_scene(&case, &mesh, Vec::new(), Vec::new()).map_err(|error| error.to_string())?;
+    Ok(built.statics.map(|statics| statics.control))
+}
+
+/// Heat does not flow back along a path.
+#[test]
+fn heat_beside_a_bond_flows_in_time() {
+    let case = HEATED.replace("\"heat\"", "\"static\"") + INTERFACE;
+    assert_eq!(bar_of_two_parts(&case), Ok(Some(Control::Time)));
+    let cold = case.replace("[heat]\ninitial_temperature = \"300 K\"\n", "");
+    let told = bar_of_two_parts(&cold).unwrap_err();
+    assert!(told.contains("without [heat]") && told.contains("no heat_transfer"), "{told}");
+    let cold = cold.replace("heat_transfer = \"100 W/(m^2 K)\"\n", "");
+    assert_eq!(bar_of_two_parts(&cold), Ok(Some(Control::TimeThenPath)));
 }
