@@ -96,15 +96,15 @@ mod tests {
             }
         }
         assert_eq!(insert(&lower, &upper, depth, &radii[..9], 3), centres[..9]);
+        // Random sequential insertion of spheres of one size ends at 0.38 of the volume.
+        let many = insert(&lower, &upper, depth, &[0.05; 2000], 1).len() as f64;
+        let share = many * fractum_math::sphere_volume(0.05) / (0.9 * 0.5 * 0.7);
+        assert!(share > 0.3 && share < 0.55, "{share}");
         // In a plane discs of one size end at 0.547 of the area.
         let upper = Vec3::new(1.0, 1.0, 0.0);
         let depth = |x: &Vec3| x.xy().min().min((upper - x).xy().min());
         let discs = insert(&Vec3::zeros(), &upper, depth, &[0.02; 900], 1);
         let share = discs.len() as f64 * std::f64::consts::PI * 4e-4 / (0.96 * 0.96);
         assert!(discs.iter().all(|x| x.z == 0.0) && share > 0.48 && share < 0.57, "{share}");
-        // Random sequential insertion of spheres of one size ends at 0.38 of the volume.
-        let many = insert(&lower, &upper, depth, &[0.05; 2000], 1).len() as f64;
-        let share = many * fractum_math::sphere_volume(0.05) / (0.9 * 0.5 * 0.7);
-        assert!(share > 0.3 && share < 0.55, "{share}");
     }
 }
