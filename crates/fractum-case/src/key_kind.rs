@@ -58,6 +58,8 @@ pub enum KeyKind {
     DirectionOrAbout,
     /// Three quantities.
     Point(Dimension),
+    /// Three quantities, or two in the plane of discs.
+    PointOrPlane(Dimension),
     /// A quantity, an expression of t, x, y, z, or one of the tables of `TIME_FUNCTION`.
     TimeFunction(Dimension),
     /// A quantity, or an expression of x, y, z.
@@ -102,6 +104,7 @@ impl KeyKind {
             }
             Self::Direction => "an axis such as \"x\" or \"-y\", or three numbers".to_string(),
             Self::Point(dimension) => format!("three numbers, each {}", dimension.expected()),
+            Self::PointOrPlane(dimension) => format!("three numbers, of discs two, each {}", dimension.expected()),
             Self::TimeFunction(dimension) => {
                 format!("{}, an expression of t, x, y, z, or a table such as {{ ramp = [...] }}", dimension.expected())
             }
@@ -141,6 +144,7 @@ impl KeyKind {
             Self::Direction => "direction".to_string(),
             Self::DirectionOrAbout => "direction, radial, tangential".to_string(),
             Self::Point(dimension) => format!("three of [{dimension}]"),
+            Self::PointOrPlane(dimension) => format!("three of [{dimension}], of discs two"),
             Self::TimeFunction(dimension) => format!("time function [{dimension}]"),
             Self::Field(Dimension::NONE) => "expression".to_string(),
             Self::Field(dimension) => format!("expression [{dimension}]"),

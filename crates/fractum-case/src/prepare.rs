@@ -182,7 +182,8 @@ fn loose_request<'a>(case: &'a Case, loose: &'a LooseBody) -> LooseRequest<'a> {
     };
     let clump = loose.clump.as_ref().map(|clump| &clump.value);
     let repeats = case.periodic.as_ref().map_or([false; 3], |own| repeats(own, &loose.source));
-    LooseRequest { source, density: material.density, young_modulus: material.young_modulus, clump, repeats }
+    let thickness = loose.thickness.as_ref().map(|thickness| thickness.value);
+    LooseRequest { source, density: material.density, young_modulus: material.young_modulus, clump, thickness, repeats }
 }
 
 /// Axes along which a periodic box repeats with the edges of the box that a cloud fills.

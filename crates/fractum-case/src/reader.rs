@@ -357,7 +357,13 @@ impl<'a> Table<'a> {
     /// Dimension of a key by the list of keys.
     pub(super) fn dimension(&self, name: &str) -> Dimension {
         match self.kind(name) {
-            Some(KeyKind::Quantity(d) | KeyKind::Field(d) | KeyKind::Point(d) | KeyKind::TimeFunction(d)) => d,
+            Some(
+                KeyKind::Quantity(d)
+                | KeyKind::Field(d)
+                | KeyKind::Point(d)
+                | KeyKind::PointOrPlane(d)
+                | KeyKind::TimeFunction(d),
+            ) => d,
             Some(KeyKind::Unit(Some(d))) => d,
             _ => Dimension::NONE,
         }

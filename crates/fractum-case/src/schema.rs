@@ -72,6 +72,9 @@ fn value(path: &str, kind: KeyKind, doc: &str, default: &str) -> Value {
         }
         KeyKind::Direction => json!({ "anyOf": [{ "type": "string", "pattern": "^[-+]?[xyz]$" }, triple()] }),
         KeyKind::Point(_) => triple(),
+        KeyKind::PointOrPlane(_) => {
+            json!({ "type": "array", "items": { "type": ["number", "string"] }, "minItems": 2, "maxItems": 3 })
+        }
         KeyKind::TimeFunction(_) => {
             json!({ "anyOf": [{ "type": ["number", "string"] }, { "$ref": "#/$defs/time_function" }] })
         }

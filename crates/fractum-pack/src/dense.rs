@@ -42,16 +42,45 @@ const DRAWS: usize = 100_000;
 /// Bad dimensions; [`PackError::NoRoom`] for a sphere that has no room by itself; [`PackError::Dense`] with the largest fraction
 /// that was reached with these sizes; [`PackError::TooDense`] where none comes near.
 pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> Result<Vec<Vec3>, PackError> {
+    let asked = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
+    place(domain, repeats, false, radii, asked, seed)
+}
+
+/// The same of discs in the plane through the middle of a box or sphere, across z.
+///
+/// # Errors
+/// Those of [`dense`].
+pub fn dense_discs(domain: &Domain, area: f64, radii: &[f64], seed: u64) -> Result<Vec<Vec3>, PackError> {
+    let asked = radii.iter().map(|radius| std::f64::consts::PI * radius * radius).sum::<f64>() / area;
+    place(domain, [false; 3], true, radii, asked, seed)
+}
+
+/// - `asked`: share of the domain that is to be filled
+fn place(
+    domain: &Domain,
+    repeats: [bool; 3],
+    in_plane: bool,
+    radii: &[f64],
+    asked: f64,
+    seed: u64,
+) -> Result<Vec<Vec3>, PackError> {
     domain.check()?;
-    let (lower, upper) = domain.bounds();
+    let (mut lower, mut upper) = domain.bounds();
+    if in_plane {
+        (lower.z, upper.z) = (0.5 * (lower.z + upper.z), 0.5 * (lower.z + upper.z));
+    }
     // What does not repeat is as a period without end, and a wall that is not there infinitely far.
     let period = repeats.contains(&true).then(|| {
         let end = |axis: usize, own: &Vec3, sign: f64| if repeats[axis] { own[axis] } else { sign * 1e300 };
         Period::new(Vec3::from_fn(|axis, _| end(axis, &lower, -1.0)), Vec3::from_fn(|axis, _| end(axis, &upper, 1.0)))
     });
-    let walls = match period {
-        None => domain.clone(),
-        Some(_) => {
+    let walls = match (period, domain) {
+        (None, Domain::Box { .. }) if in_plane => {
+            let end = |x: &Vec3, z: f64| Vec3::new(x.x, x.y, z);
+            Domain::Box { lower: end(&lower, f64::NEG_INFINITY), upper: end(&upper, f64::INFINITY) }
+        }
+        (None, _) => domain.clone(),
+        (Some(_), _) => {
             let end = |axis: usize, own: &Vec3, sign: f64| if repeats[axis] { sign * f64::INFINITY } else { own[axis] };
             let [lower, upper] =
                 [(&lower, -1.0), (&upper, 1.0)].map(|(own, sign)| Vec3::from_fn(|axis, _| end(axis, own, sign)));
@@ -65,13 +94,14 @@ pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> R
     };
     let start = radii.iter().map(|&radius| place(radius).ok_or(PackError::NoRoom { radius }));
     let start = start.collect::<Result<Vec<Vec3>, PackError>>()?;
-    let asked = radii.iter().copied().map(sphere_volume).sum::<f64>() / domain.volume();
     if asked > MOST {
         return Err(PackError::TooDense(asked));
     }
     let order = spatial_order(&start);
     let sorted: Vec<f64> = order.iter().map(|&i| radii[i as usize]).collect();
-    let mut cloud = Cloud::new(&walls, period, order.iter().map(|&i| start[i as usize]).collect(), sorted);
+    let dimensions = if in_plane { 2 } else { 3 };
+    let places = order.iter().map(|&i| start[i as usize]).collect();
+    let mut cloud = Cloud::new(&walls, period, places, sorted, dimensions);
     if ENLARGED.into_iter().any(|(enlarged, steps)| cloud.push_apart(enlarged, steps)) {
         let mut centres = start;
         for (&i, x) in order.iter().zip(&cloud.assembly.position) {
@@ -79,7 +109,7 @@ pub fn dense(domain: &Domain, repeats: [bool; 3], radii: &[f64], seed: u64) -> R
         }
         return Ok(centres);
     }
-    Err(PackError::Dense { asked, reached: asked * cloud.shrink().powi(3) })
+    Err(PackError::Dense { asked, reached: asked * cloud.shrink().powi(dimensions) })
 }
 
 /// Spheres on their way to places where they do not touch.
@@ -92,13 +122,13 @@ struct Cloud<'a> {
 }
 
 impl<'a> Cloud<'a> {
-    fn new(walls: &'a Domain, period: Option<Period>, position: Vec<Vec3>, radius: Vec<f64>) -> Self {
+    fn new(walls: &'a Domain, period: Option<Period>, position: Vec<Vec3>, radius: Vec<f64>, dimensions: i32) -> Self {
         let smallest = radius.iter().copied().fold(f64::INFINITY, f64::min);
         let mut assembly = Assembly::new(walls, position, radius.clone());
         assembly.period = period;
         assembly.skin = SKIN;
-        // Contacts, and with them stiffness, grow with the surface.
-        assembly.mobility = radius.iter().map(|r| (smallest / r).powi(2)).collect();
+        // Contacts, and with them stiffness, grow with the surface, or the circumference.
+        assembly.mobility = radius.iter().map(|r| (smallest / r).powi(dimensions - 1)).collect();
         Cloud { assembly, radius, scale: 1.0 }
     }
 
@@ -156,8 +186,7 @@ mod tests {
     const WALLS: [bool; 3] = [false; 3];
 
     fn radii(grading: &Grading, share: f64, domain: &Domain) -> Vec<f64> {
-        let mean = grading.mean_cube() * std::f64::consts::PI / 6.0;
-        let count = (share * domain.volume() / mean).round() as usize;
+        let count = (share * domain.volume() / grading.mean_volume()).round() as usize;
         grading.draw(count, 5).iter().map(|d| 0.5 * d).collect()
     }
 
@@ -257,6 +286,45 @@ mod tests {
                     let most = if free_of_walls { 0.02 } else { 0.1 };
                     assert!((inner / fraction - 1.0).abs() < most, "{shape} {name} {seed}: {inner} of {fraction}");
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn discs_fill_a_plane_without_touching() {
+        println!("| shape | sizes | discs | fraction | s |");
+        for (shape, domain, area) in [
+            ("square", Domain::cuboid(1.0, 1.0, 1.0), 1.0),
+            ("circle", Domain::sphere(0.5), 0.25 * std::f64::consts::PI),
+        ] {
+            for (sizes, grading, asked) in [
+                ("1 to 1.4", Grading::uniform_discs(0.03, 0.042), 0.8),
+                ("1 to 3", Grading::uniform_discs(0.02, 0.06), 0.8),
+                ("one", Grading::uniform_discs(0.04, 0.04), 0.78),
+            ] {
+                let count = (asked * area / grading.mean_volume()).floor() as usize;
+                let radii: Vec<f64> = grading.draw(count, 3).iter().map(|d| 0.5 * d).collect();
+                for seed in 1..=3 {
+                    let clock = Instant::now();
+                    let centres = dense_discs(&domain, area, &radii, seed).unwrap();
+                    let fraction = radii.iter().map(|r| std::f64::consts::PI * r * r).sum::<f64>() / area;
+                    println!("| {shape} | {sizes} | {count} | {fraction:.3} | {:.2} |", clock.elapsed().as_secs_f64());
+                    let middle = 0.5 * (domain.bounds().0 + domain.bounds().1);
+                    for i in 0..count {
+                        assert_eq!(centres[i].z, middle.z);
+                        let in_box = centres[i].xy().min().min((Vec3::repeat(1.0) - centres[i]).xy().min());
+                        let depth = if shape == "circle" { domain.depth(&centres[i]) } else { in_box };
+                        assert!(depth >= radii[i], "{shape} {sizes} {seed}");
+                        for j in 0..i {
+                            assert!((centres[i] - centres[j]).norm() > radii[i] + radii[j], "{shape} {sizes} {seed}");
+                        }
+                    }
+                }
+                let more: Vec<f64> = grading.draw((0.9 * area / grading.mean_volume()) as usize, 3);
+                let more: Vec<f64> = more.iter().map(|d| 0.5 * d).collect();
+                let Err(PackError::Dense { reached, .. }) = dense_discs(&domain, area, &more, 1) else { panic!() };
+                println!("| {shape} | {sizes} | {} | at most {reached:.3} | |", more.len());
+                assert!(reached > 0.79 && reached < 0.88, "{shape} {sizes}: {reached}");
             }
         }
     }

@@ -14,8 +14,10 @@ pub struct Grading {
     passing: Vec<[f64; 2]>,
     /// Share of the number of particles below each of these diameters.
     number: Vec<f64>,
-    /// Mean of the cube of the diameter over the particles [m³].
-    mean_cube: f64,
+    /// Mean over the particles of the cube of the diameter [m³], of discs of its square [m²].
+    mean_power: f64,
+    /// Whether the particles are discs of one thickness, and not spheres.
+    of_discs: bool,
 }
 
 impl Grading {
@@ -23,10 +25,19 @@ impl Grading {
     ///
     /// - `passing`: openings [m], > 0 and ascending, with the share of the mass that passes: from 0 to 1, not descending
     pub fn sieves(passing: Vec<[f64; 2]>) -> Self {
-        // Of the mass dM between two diameters there are dM/(π/6 ρ d³) particles.
+        Grading::new(passing, false)
+    }
+
+    /// The same shares of the mass, of discs of one thickness.
+    pub fn of_discs(self) -> Self {
+        Grading::new(self.passing, true)
+    }
+
+    fn new(passing: Vec<[f64; 2]>, of_discs: bool) -> Self {
+        // Of the mass dM between two diameters there are dM/(π/6 ρ d³) spheres, or dM/(π/4 ρ t d²) discs.
         let count = |pair: &[[f64; 2]]| {
             let ([a, low], [b, high]) = (pair[0], pair[1]);
-            (high - low) * (a + b) / (2.0 * a * a * b * b)
+            if of_discs { (high - low) / (a * b) } else { (high - low) * (a + b) / (2.0 * a * a * b * b) }
         };
         let mut number = vec![0.0];
         for pair in passing.windows(2) {
@@ -35,7 +46,7 @@ impl Grading {
         let all = number[number.len() - 1];
         number.iter_mut().for_each(|share| *share /= all);
         // All mass over all particles, both over the same mass.
-        Grading { passing, number, mean_cube: 1.0 / all }
+        Grading { passing, number, mean_power: 1.0 / all, of_discs }
     }
 
     /// As many particles of every diameter between two [m], which may be one.
@@ -44,6 +55,14 @@ impl Grading {
             return Grading::sieves(vec![[smallest, 0.0], [largest, 1.0]]);
         }
         Grading::tabulated(smallest, largest, |_| 1.0)
+    }
+
+    /// The same of discs.
+    pub fn uniform_discs(smallest: f64, largest: f64) -> Self {
+        if smallest == largest {
+            return Grading::uniform(smallest, largest).of_discs();
+        }
+        Grading::tabulated(smallest, largest, |d| 1.0 / d).of_discs()
     }
 
     /// Logarithms of the diameters of the mass that are normally distributed, cut off at two diameters [m].
@@ -81,9 +100,9 @@ impl Grading {
         [below.map_or(self.passing[0][0], |p| p[0]), above.map_or(self.passing[self.passing.len() - 1][0], |p| p[0])]
     }
 
-    /// Mean volume of a particle over π/6 [m³].
-    pub fn mean_cube(&self) -> f64 {
-        self.mean_cube
+    /// Mean volume of a sphere [m³], or area of a disc [m²].
+    pub fn mean_volume(&self) -> f64 {
+        std::f64::consts::PI * self.mean_power / if self.of_discs { 4.0 } else { 6.0 }
     }
 
     /// Diameter below which this share of the mass lies [m].
@@ -111,8 +130,11 @@ impl Grading {
         let next = self.number.partition_point(|own| *own <= share).clamp(1, self.number.len() - 1);
         let (low, high) = (self.number[next - 1], self.number[next]);
         let part = if high > low { (share - low) / (high - low) } else { 1.0 };
-        // The number grows with 1/a² − 1/d² where the mass grows in proportion to d.
+        // The number of spheres grows with 1/a² − 1/d² where the mass grows in proportion to d, that of discs with 1/a − 1/d.
         let [a, b] = [self.passing[next - 1][0], self.passing[next][0]];
+        if self.of_discs {
+            return (1.0 / (1.0 / a + part * (1.0 / b - 1.0 / a))).clamp(a, b);
+        }
         let inverse = 1.0 / (a * a) + part * (1.0 / (b * b) - 1.0 / (a * a));
         (1.0 / inverse.sqrt()).clamp(a, b)
     }
@@ -132,15 +154,15 @@ mod tests {
     use super::*;
 
     /// Largest difference of the share of the mass below a diameter from what was asked.
-    fn off(grading: &Grading, diameters: &[f64]) -> f64 {
+    fn off(grading: &Grading, diameters: &[f64], power: i32) -> f64 {
         let mut sorted = diameters.to_vec();
         sorted.sort_by(f64::total_cmp);
-        let all: f64 = sorted.iter().map(|d| d.powi(3)).sum();
+        let all: f64 = sorted.iter().map(|d| d.powi(power)).sum();
         let mut below = 0.0;
         let mut worst = 0.0f64;
         for d in sorted {
             worst = worst.max((below / all - grading.share(d)).abs());
-            below += d.powi(3);
+            below += d.powi(power);
             worst = worst.max((below / all - grading.share(d)).abs());
         }
         worst
@@ -149,18 +171,20 @@ mod tests {
     #[test]
     fn what_is_drawn_has_the_curve_that_was_asked_for() {
         let sieves = Grading::sieves(vec![[0.5e-3, 0.0], [1e-3, 0.3], [2e-3, 0.7], [4e-3, 1.0]]);
-        let laws = [sieves, Grading::uniform(1e-3, 3e-3), Grading::log_normal(1e-3, 0.3, 0.4e-3, 2.5e-3)];
-        for grading in laws {
+        let log_normal = Grading::log_normal(1e-3, 0.3, 0.4e-3, 2.5e-3);
+        let discs = [sieves.clone().of_discs(), Grading::uniform_discs(1e-3, 3e-3), log_normal.clone().of_discs()];
+        let spheres = [sieves, Grading::uniform(1e-3, 3e-3), log_normal];
+        for (grading, power) in spheres.into_iter().map(|own| (own, 3)).chain(discs.into_iter().map(|own| (own, 2))) {
             for seed in 1..4 {
                 for count in [500, 5000] {
                     let diameters = grading.draw(count, seed);
-                    let cubes: f64 = diameters.iter().map(|d| d.powi(3)).sum();
+                    let powers: f64 = diameters.iter().map(|d| d.powi(power)).sum();
                     // The largest particle is a step of the curve.
-                    let step = diameters[0].powi(3) / cubes;
-                    let worst = off(&grading, &diameters);
+                    let step = diameters[0].powi(power) / powers;
+                    let worst = off(&grading, &diameters, power);
                     assert!(worst < 1.5 * step, "{count} {seed}: {worst} for {step}");
-                    let mean = cubes / count as f64;
-                    assert!((mean / grading.mean_cube() - 1.0).abs() < 1.5 * step, "{mean}");
+                    let mean = powers / count as f64;
+                    assert!((mean / grading.mean_power - 1.0).abs() < 1.5 * step, "{mean}");
                 }
             }
         }
@@ -170,7 +194,11 @@ mod tests {
     fn laws_have_their_moments() {
         let uniform = Grading::uniform(1.0, 3.0);
         // The mean of d³ between 1 and 3 is 10.
-        assert!((uniform.mean_cube() / 10.0 - 1.0).abs() < 1e-3, "{}", uniform.mean_cube());
+        assert!((uniform.mean_power / 10.0 - 1.0).abs() < 1e-3, "{}", uniform.mean_power);
+        // That of d² is 13/3, and as many discs of every diameter are there.
+        let discs = Grading::uniform_discs(1.0, 3.0);
+        assert!((discs.mean_power * 3.0 / 13.0 - 1.0).abs() < 1e-3, "{}", discs.mean_power);
+        assert!((discs.at_number(0.5) - 2.0).abs() < 1e-2);
         let log_normal = Grading::log_normal(1.0, 0.3, 0.1, 10.0);
         assert!((log_normal.at(0.5) - 1.0).abs() < 1e-3);
         // One standard deviation above the median.

@@ -9,7 +9,7 @@ use crate::random::Random;
 /// Places that are tried for a sphere before there is no room for it.
 const TRIES: usize = 20_000;
 
-/// Puts spheres into a region so that no two touch; stops at the first without room.
+/// Puts spheres into a region so that no two touch; stops at the first without room. Centres lie in the plane of a region without extent along an axis.
 ///
 /// - `lower`, `upper` [m]: box around the region; `depth`: distance of a point from its wall [m], positive inside
 /// - `radii` [m]: largest first
@@ -19,11 +19,8 @@ pub fn insert(lower: &Vec3, upper: &Vec3, depth: impl Fn(&Vec3) -> f64, radii: &
     let mut layers = Layers::default();
     let mut centres = Vec::with_capacity(radii.len());
     for &radius in radii {
-        let room = upper - lower - Vec3::repeat(2.0 * radius);
-        if room.min() < 0.0 {
-            break;
-        }
-        let mut place = || lower + Vec3::from_fn(|axis, _| radius + room[axis] * random.uniform());
+        let Some((inset, room)) = room_for(lower, upper, radius) else { break };
+        let mut place = || lower + Vec3::from_fn(|axis, _| inset[axis] + room[axis] * random.uniform());
         let found =
             (0..TRIES).map(|_| place()).find(|x| depth(x) >= radius && layers.is_free(x, radius, &centres, radii));
         let Some(found) = found else { break };
@@ -31,6 +28,13 @@ pub fn insert(lower: &Vec3, upper: &Vec3, depth: impl Fn(&Vec3) -> f64, radii: &
         centres.push(found);
     }
     centres
+}
+
+/// How far within its lower corner a box has room for the centre of a ball, and how much [m]; none where it has none.
+pub(crate) fn room_for(lower: &Vec3, upper: &Vec3, radius: f64) -> Option<(Vec3, Vec3)> {
+    let inset = lower.zip_map(upper, |from, to| if from == to { 0.0 } else { radius });
+    let room = upper - lower - inset * 2.0;
+    (room.min() >= 0.0).then_some((inset, room))
 }
 
 /// Spheres by cells, one grid for each octave of sizes.
@@ -96,5 +100,11 @@ mod tests {
         let many = insert(&lower, &upper, depth, &[0.05; 2000], 1).len() as f64;
         let share = many * fractum_math::sphere_volume(0.05) / (0.9 * 0.5 * 0.7);
         assert!(share > 0.3 && share < 0.55, "{share}");
+        // In a plane discs of one size end at 0.547 of the area.
+        let upper = Vec3::new(1.0, 1.0, 0.0);
+        let depth = |x: &Vec3| x.xy().min().min((upper - x).xy().min());
+        let discs = insert(&Vec3::zeros(), &upper, depth, &[0.02; 900], 1);
+        let share = discs.len() as f64 * std::f64::consts::PI * 4e-4 / (0.96 * 0.96);
+        assert!(discs.iter().all(|x| x.z == 0.0) && share > 0.48 && share < 0.57, "{share}");
     }
 }

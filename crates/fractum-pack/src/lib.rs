@@ -6,7 +6,7 @@
 //!
 //! A box may repeat along its edges ([`Domain::Periodic`]): it has no walls.
 //!
-//! [`cloud`], [`insert`] and [`dense`] place loose spheres that do not touch.
+//! [`cloud`], [`insert`], [`dense`] and [`dense_discs`] place loose particles that do not touch.
 //!
 //! Not modelled: friction and gravity during packing, prescribed size distributions other than uniform.
 //!
@@ -45,7 +45,7 @@ mod wall_areas;
 pub use certificate::{Certificate, ContactFigures, OverlapFigures, interior_fraction};
 pub use cloud::{cloud, cloud_cells};
 pub use cooker::{PackProgress, PackSize, PackSpec, pack, pack_and_tell, pack_certified};
-pub use dense::dense;
+pub use dense::{dense, dense_discs};
 pub use domain::{Domain, DomainData};
 pub use error::PackError;
 pub use grading::Grading;

@@ -3,6 +3,7 @@
 use fractum_math::{Vec3, sphere_volume};
 
 use crate::grading::Grading;
+use crate::insertion::room_for;
 use crate::random::Random;
 
 /// Points that are drawn for a place before a region has no room for a sphere.
@@ -36,7 +37,7 @@ impl Sizes {
         match self {
             // The mean of r³ over radii r (1 - κ/2) to r (1 + κ/2).
             Sizes::Uniform { radius, dispersion } => sphere_volume(*radius) * (1.0 + 0.25 * dispersion * dispersion),
-            Sizes::Graded(grading) => grading.mean_cube() * std::f64::consts::PI / 6.0,
+            Sizes::Graded(grading) => grading.mean_volume(),
         }
     }
 
@@ -63,13 +64,10 @@ pub fn place_in(
     radius: f64,
     (seed, number): (u64, u64),
 ) -> Option<Vec3> {
-    let room = upper - lower - Vec3::repeat(2.0 * radius);
-    if room.min() < 0.0 {
-        return None;
-    }
+    let (inset, room) = room_for(lower, upper, radius)?;
     // Odd, so that no two numbers of a seed have the same stream.
     let mut random = Random::new(seed ^ number.wrapping_mul(0xD134_2543_DE82_EF95));
-    let mut place = || lower + Vec3::from_fn(|axis, _| radius + room[axis] * random.uniform());
+    let mut place = || lower + Vec3::from_fn(|axis, _| inset[axis] + room[axis] * random.uniform());
     (0..DRAWS).map(|_| place()).find(|x| depth(x) >= radius)
 }
 

@@ -103,6 +103,8 @@ pub struct LooseRequest<'a> {
     pub young_modulus: f64,
     /// What each of them is, where it is no single sphere.
     pub clump: Option<&'a Clump>,
+    /// Thickness of plane discs [m]; none of spheres.
+    pub thickness: Option<f64>,
     /// Axes along which space repeats with the edges of the box that they fill.
     pub repeats: [bool; 3],
 }
@@ -246,7 +248,7 @@ impl Stream {
 pub enum Amount {
     /// So many particles.
     Count(u64),
-    /// Volume of the particles over that of the region.
+    /// Volume of the particles over that of the region, of discs area over area.
     Fraction(f64),
 }
 
@@ -332,27 +334,48 @@ pub enum Region {
         /// Radius [m], > 0.
         radius: f64,
     },
+    /// A rectangle in the xy-plane, for discs.
+    Rectangle {
+        /// Lower corner [m].
+        point: Vec3,
+        /// Edges [m], > 0, and 0 along z.
+        size: Vec3,
+    },
+    /// A circle in the xy-plane, for discs.
+    Circle {
+        /// Centre [m].
+        point: Vec3,
+        /// Radius [m], > 0.
+        radius: f64,
+    },
 }
 
 impl Region {
-    /// Volume [m³].
+    /// Area of a plane region [m²].
+    pub fn area(&self) -> Option<f64> {
+        match self {
+            Region::Rectangle { .. } | Region::Circle { .. } => Some(self.volume()),
+            _ => None,
+        }
+    }
+
+    /// Volume [m³]; of plane regions the area [m²].
     pub fn volume(&self) -> f64 {
         match self {
             Region::Box { size, .. } => size.product(),
             Region::Cylinder { length, radius, .. } => std::f64::consts::PI * radius * radius * length,
             Region::Sphere { radius, .. } => fractum_math::sphere_volume(*radius),
+            Region::Rectangle { size, .. } => size.x * size.y,
+            Region::Circle { radius, .. } => std::f64::consts::PI * radius * radius,
         }
     }
 }
 
-/// Particles of given sizes in a volume [m³], at least one.
+/// Particles of given sizes in a volume [m³], or discs in an area [m²], at least one.
 pub fn graded_count(volume: f64, grading: &Grading, amount: Amount) -> f64 {
     match amount {
         Amount::Count(count) => count as f64,
-        Amount::Fraction(share) => {
-            let mean = grading.mean_cube() * std::f64::consts::PI / 6.0;
-            (share * volume / mean).round().max(1.0)
-        }
+        Amount::Fraction(share) => (share * volume / grading.mean_volume()).round().max(1.0),
     }
 }
 

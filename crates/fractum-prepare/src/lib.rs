@@ -14,7 +14,7 @@
 //! let region = Region::Box { point: Vec3::zeros(), size: Vec3::repeat(1.0) };
 //! let source = LooseFill::Cloud { region: &region, radius: 0.1, dispersion: 0.0, count: Some(20), seed: 1 };
 //! let (density, young_modulus, repeats) = (2500.0, 70e9, [false; 3]);
-//! let made = prepare_loose(&LooseRequest { source, density, young_modulus, clump: None, repeats }, &Mesh::default(), &|_| {});
+//! let made = prepare_loose(&LooseRequest { source, density, young_modulus, clump: None, thickness: None, repeats }, &Mesh::default(), &|_| {});
 //! let made = made.unwrap().body;
 //! assert_eq!((made.particles.len(), made.pairs.len()), (20, 0));
 //! ```

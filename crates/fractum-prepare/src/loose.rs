@@ -1,11 +1,12 @@
 //! Loose particles made ready: clouds filled, files read.
 
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use fractum_dem::{BeamSection, Clumps, Particles};
 use fractum_math::{Rotation, Vec3, rotation_between, sphere_volume};
 use fractum_mesh::Mesh;
-use fractum_pack::{Domain, Grading, PackError, cloud, dense, insert, orientations, place_in, read_stl};
+use fractum_pack::{Domain, Grading, PackError, cloud, dense, dense_discs, insert, orientations, place_in, read_stl};
 use fractum_scene::Arrivals;
 
 use crate::asked::{
@@ -13,7 +14,7 @@ use crate::asked::{
 };
 use crate::body::PreparedBody;
 use crate::bonded::group_surface;
-use crate::particle_file;
+use crate::particle_file::{self, FileParticles};
 
 /// Loose particles that were made.
 pub struct MadeParticles {
@@ -43,7 +44,8 @@ pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh, tell: &dyn Fn(&str))
             match count {
                 Some(count) if centres.len() < most => {
                     let (half, mean) = (0.5 * dispersion, 2.0 * radius);
-                    let grading = Grading::uniform(mean * (1.0 - half), mean * (1.0 + half));
+                    let uniform = if asked.thickness.is_some() { Grading::uniform_discs } else { Grading::uniform };
+                    let grading = uniform(mean * (1.0 - half), mean * (1.0 + half));
                     let shape = domain(Filled::Region(region), mesh)?;
                     (centres, radii) = fill_graded(shape, asked.repeats, &grading, Amount::Count(count), seed, tell)?;
                 }
@@ -69,15 +71,20 @@ pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh, tell: &dyn Fn(&str))
         }
     };
     let grains = position.len();
-    let (mut particles, mut clumps) = match asked.clump {
-        Some(clump) => {
+    let wrong = |error| Fault::new(at, error);
+    let (mut particles, mut clumps) = match (asked.clump, asked.thickness) {
+        (Some(clump), _) => {
             let places = clump_places(clump, position, radius);
-            Clumps::at_rest(&clump.shape, &places, asked.density).map_err(|error| Fault::new(at, error))?
+            Clumps::at_rest(&clump.shape, &places, asked.density).map_err(wrong)?
         }
-        None => {
+        (None, Some(thickness)) => {
+            file.iter().try_for_each(|file| check_plane(&position, file))?;
+            let discs = Particles::discs_at_rest(position, radius, asked.density, thickness);
+            (discs.map_err(wrong)?, Clumps::default())
+        }
+        (None, None) => {
             let mass = radius.iter().map(|r| sphere_volume(*r)).sum::<f64>() * asked.density;
-            let particles = Particles::at_rest(position, radius, mass).map_err(|error| Fault::new(at, error))?;
-            (particles, Clumps::default())
+            (Particles::at_rest(position, radius, mass).map_err(wrong)?, Clumps::default())
         }
     };
     if let Some(found) = file.as_ref().filter(|_| !clumps.is_empty()) {
@@ -115,6 +122,17 @@ pub fn prepare_loose(asked: &LooseRequest<'_>, mesh: &Mesh, tell: &dyn Fn(&str))
     Ok(MadeParticles { body, read })
 }
 
+/// Discs of a file lie in the plane z = 0, and stay there.
+fn check_plane(position: &[Vec3], file: &FileParticles) -> Result<(), Fault> {
+    let leaves = |i: &usize| {
+        let of = |all: &[Vec3]| all.get(*i).copied().unwrap_or_else(Vec3::zeros);
+        position[*i].z != 0.0 || of(&file.velocity).z != 0.0 || of(&file.spin).xy().norm() != 0.0
+    };
+    let Some(first) = (0..position.len()).find(leaves) else { return Ok(()) };
+    let found = format!("its particle {first} lies beside the plane z = 0, moves out of it or turns about x or y");
+    Err(Fault::new(At::File, found).remedy("discs in the plane z = 0, or spheres: leave thickness out"))
+}
+
 /// Centre of mass, radius of the sphere around it [m] and orientation of each grain.
 fn clump_places(clump: &Clump, centres: Vec<Vec3>, radii: Vec<f64>) -> Vec<(Vec3, f64, Rotation)> {
     let turns = match clump.turn {
@@ -132,16 +150,19 @@ const MOST: f64 = 2e7;
 const FEWER: &str = "fewer particles or a lower solid_fraction, a wider curve, or a larger region";
 /// Solid fraction up to which places are drawn until they are free; beyond it the particles push each other apart.
 const LOOSE: f64 = 0.3;
+/// The same of discs, by area.
+const LOOSE_DISCS: f64 = 0.45;
 
 fn fill_graded(
-    (domain, turn): (Domain, Turned),
+    Shaped { domain, turn, area }: Shaped,
     repeats: [bool; 3],
     grading: &Grading,
     amount: Amount,
     seed: u64,
     tell: &dyn Fn(&str),
 ) -> Result<(Vec<Vec3>, Vec<f64>), Fault> {
-    let count = graded_count(domain.volume(), grading, amount);
+    let whole = area.unwrap_or_else(|| domain.volume());
+    let count = graded_count(whole, grading, amount);
     if count > MOST {
         let fault =
             Fault::new(At::Size, format!("asks for {count:.2e} particles of these sizes, more than {MOST:.0e}"));
@@ -152,15 +173,24 @@ fn fill_graded(
     // Places have numbers of their own.
     let seed = !seed;
     let turned = |centres: Vec<Vec3>| centres.iter().map(|x| turn.place(x)).collect();
-    if radii.iter().copied().map(sphere_volume).sum::<f64>() <= LOOSE * domain.volume() {
-        let (lower, upper) = domain.bounds();
+    let (content, loose): (fn(f64) -> f64, f64) =
+        if area.is_some() { (|r| PI * r * r, LOOSE_DISCS) } else { (sphere_volume, LOOSE) };
+    if radii.iter().copied().map(content).sum::<f64>() <= loose * whole {
+        let (mut lower, mut upper) = domain.bounds();
+        if area.is_some() {
+            (lower.z, upper.z) = (0.0, 0.0);
+        }
         let centres = insert(&lower, &upper, |x| domain.depth(x), &radii, seed);
         if centres.len() == radii.len() {
             return Ok((turned(centres), radii));
         }
     }
     tell(&format!("placing {count} particles densely"));
-    match dense(&domain, repeats, &radii, seed) {
+    let placed = match area {
+        Some(area) => dense_discs(&domain, area, &radii, seed),
+        None => dense(&domain, repeats, &radii, seed),
+    };
+    match placed {
         Ok(centres) => Ok((turned(centres), radii)),
         Err(PackError::Dense { asked, reached }) => {
             let room = (reached / asked * count).floor();
@@ -189,25 +219,40 @@ impl Turned {
     }
 }
 
-/// What is filled as a shape that can be packed, and how that is turned.
-fn domain(filled: Filled<'_>, mesh: &Mesh) -> Result<(Domain, Turned), Fault> {
-    let as_it_is = Turned { about: Vec3::zeros(), by: None };
+/// What is filled as a shape that can be packed.
+struct Shaped {
+    domain: Domain,
+    turn: Turned,
+    /// Area that discs fill in the plane z = 0, in the middle of the shape [m²]; none in space.
+    area: Option<f64>,
+}
+
+fn domain(filled: Filled<'_>, mesh: &Mesh) -> Result<Shaped, Fault> {
+    let shaped = |domain: Domain| {
+        let turn = Turned { about: Vec3::zeros(), by: None };
+        let area = if let Filled::Region(region) = filled { region.area() } else { None };
+        Shaped { domain, turn, area }
+    };
     let surface = match filled {
         Filled::Region(&Region::Box { point, size }) => {
-            return Ok((Domain::Box { lower: point, upper: point + size }, as_it_is));
+            return Ok(shaped(Domain::Box { lower: point, upper: point + size }));
         }
-        Filled::Region(&Region::Sphere { point, radius }) => {
-            return Ok((Domain::Sphere { centre: point, radius }, as_it_is));
+        Filled::Region(&Region::Rectangle { point, size }) => {
+            let half = Vec3::z() * (0.5 * size.x.min(size.y));
+            return Ok(shaped(Domain::Box { lower: point - half, upper: point + size + half }));
+        }
+        Filled::Region(&(Region::Sphere { point, radius } | Region::Circle { point, radius })) => {
+            return Ok(shaped(Domain::Sphere { centre: point, radius }));
         }
         Filled::Region(&Region::Cylinder { point, axis, length, radius }) => {
-            let turned = Turned { about: point, by: Some(rotation_between(&Vec3::x(), &axis)) };
-            return Ok((Domain::Cylinder { start: point, length, radius }, turned));
+            let turn = Turned { about: point, by: Some(rotation_between(&Vec3::x(), &axis)) };
+            return Ok(Shaped { turn, ..shaped(Domain::Cylinder { start: point, length, radius }) });
         }
         Filled::Group(group) => group_surface(mesh, Some(group)),
         Filled::Stl { bytes, unit } => read_stl(bytes, unit),
     };
     let surface = surface.map_err(|error| Fault::new(At::Source, error))?;
-    Ok((Domain::Surface(surface), as_it_is))
+    Ok(shaped(Domain::Surface(surface)))
 }
 
 /// Radii of the particles of a stream [m], and when each is due [s]: when the rate has brought it as a whole.
@@ -269,6 +314,11 @@ fn bounds(region: &Region) -> (Vec3, Vec3) {
             (point.inf(&end) - reach, point.sup(&end) + reach)
         }
         Region::Sphere { point, radius } => (point - Vec3::repeat(radius), point + Vec3::repeat(radius)),
+        Region::Rectangle { point, size } => (point, point + size),
+        Region::Circle { point, radius } => {
+            let reach = Vec3::new(radius, radius, 0.0);
+            (point - reach, point + reach)
+        }
     }
 }
 
@@ -282,12 +332,24 @@ fn depth_in(region: &Region) -> impl Fn(&Vec3) -> f64 + use<> {
             along.min(length - along).min(radius - (x - point - axis * along).norm())
         }
         Region::Sphere { point, radius } => radius - (x - point).norm(),
+        Region::Rectangle { point, size } => (x - point).xy().min().min((point + size - x).xy().min()),
+        Region::Circle { point, radius } => radius - (x - point).xy().norm(),
     }
 }
 
 fn fill(region: &Region, radius: f64, dispersion: f64, most: usize, seed: u64) -> (Vec<Vec3>, Vec<f64>) {
-    let ((lower, upper), depth) = (bounds(region), depth_in(region));
+    let ((mut lower, mut upper), depth) = (bounds(region), depth_in(region));
     // Cells touch the walls of a box exactly; rounding must not push them out.
-    let slack = if matches!(region, Region::Box { .. }) { 1e-12 } else { 0.0 };
-    cloud(&lower, &upper, |x| depth(x) * (1.0 + slack) + slack * radius, radius, dispersion, most, seed)
+    let slack = if matches!(region, Region::Box { .. } | Region::Rectangle { .. }) { 1e-12 } else { 0.0 };
+    let is_plane = region.area().is_some();
+    if is_plane {
+        // One layer of cells, in which discs lie side by side.
+        (lower.z, upper.z) = (-2.0 * radius, 2.0 * radius);
+    }
+    let depth = |x: &Vec3| depth(x) * (1.0 + slack) + slack * radius;
+    let (mut centres, radii) = cloud(&lower, &upper, depth, radius, dispersion, most, seed);
+    if is_plane {
+        centres.iter_mut().for_each(|x| x.z = 0.0);
+    }
+    (centres, radii)
 }

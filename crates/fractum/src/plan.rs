@@ -359,6 +359,7 @@ impl Plan {
         let touched =
             (!scene.shape_contacts.is_empty() || scene.contacts.has_node_contacts()) && scene.solid.body_count() > 0;
         let balls = !scene.contacts.is_empty() && (damage || !scene.bonded.particles.is_empty());
+        let has_discs = scene.bonded.particles.thickness.is_some();
         let damping = case.damping;
         let viscous = damping.stiffness > 0.0 || damping.bulk_linear > 0.0 || damping.bulk_quadratic > 0.0;
         let on_nodes = damping.local > 0.0 || damping.mass > 0.0;
@@ -371,7 +372,8 @@ impl Plan {
             (bonded().any(beams), "cohesive beams"),
             (bonded().any(|body| !beams(body)), "interfaces of the local law"),
             (touched, "contact of solids with other bodies"),
-            (balls, "contact of particles by Hertz' law"),
+            (balls && !has_discs, "contact of particles by Hertz' law"),
+            (has_discs, "contact of discs"),
             (breaks, "breaking of bonds"),
             (on_nodes, "damping on the nodes"),
             (viscous, "viscous stress"),

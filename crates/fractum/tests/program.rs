@@ -13,6 +13,7 @@ mod clumps;
 mod confined;
 mod contact_pairs;
 mod corpus;
+mod discs;
 mod doors;
 mod drive;
 mod equilibrium;

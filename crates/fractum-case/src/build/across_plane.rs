@@ -1,14 +1,14 @@
-//! 2D solids lie in the xy-plane and have no stiffness across it: what would push them along z, or pass them by in front, is refused.
+//! 2D solids and discs lie in the xy-plane: what would push them along z, or pass them by in front, is refused.
 
 use std::ops::RangeFrom;
 
 use fractum_fem::ElementKind;
 use fractum_output::number::quantity;
 
-use super::Context;
 use super::bodies::Part;
+use super::{Context, discs};
 use crate::Place;
-use crate::model::{Body, BodyKind, LoadKind, Motion, RigidBody, RigidShape};
+use crate::model::{Body, BodyKind, LoadKind, Motion, RigidBody, RigidShape, Selection};
 
 const Z: usize = 2;
 /// Components yz and zx of an in-situ stress.
@@ -16,14 +16,24 @@ const SHEARS: RangeFrom<usize> = 4..;
 /// Component of a unit vector, or distance over a size, that counts as none.
 const NEARLY: f64 = 1e-6;
 
-/// Refuses loads, motions and initial velocities of 2D solids along z, and rigid shapes that do not meet their plane at right angles.
+/// Refuses loads, motions and initial velocities of 2D solids and discs along z, and rigid shapes that do not meet their plane at right angles.
 pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
-    let Some(part) = parts.iter().find(|part| part.shape == ElementKind::T3) else { return };
     let mesh = context.mesh;
-    let node = part.elements.first().map(|&triangle| mesh.triangles[triangle as usize][0]);
+    let part = parts.iter().find(|part| part.shape == ElementKind::T3);
+    let node = part.and_then(|part| part.elements.first()).map(|&triangle| mesh.triangles[triangle as usize][0]);
     let plane = node.map_or(0.0, |node| mesh.nodes[node as usize].z);
-    for place in along_z(context) {
-        context.error(&place, ": 2D solids lie in the xy-plane and cannot move along z", "a component along x or y");
+    let has_discs = discs::check(context, parts, plane);
+    let who = match part {
+        Some(_) => "2D solids",
+        None if has_discs => "discs",
+        None => return,
+    };
+    for place in along_z(context, has_discs) {
+        context.error(
+            &place,
+            format!(": {who} lie in the xy-plane and cannot move along z"),
+            "a component along x or y",
+        );
     }
     let shear = context.case.in_situ.iter().flat_map(|in_situ| in_situ.stress[SHEARS].iter().flatten());
     for field in shear.filter(|field| field.value.constant_value() != Some(0.0)) {
@@ -43,26 +53,28 @@ pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
         }
     }
     let particles = |body: &Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
-    if context.case.bodies.iter().any(particles) || part.body.is_axisymmetric() {
+    let in_space = !has_discs && context.case.bodies.iter().any(particles);
+    if in_space || part.is_some_and(|part| part.body.is_axisymmetric()) {
         return; // particles are what rigid bodies are for; around an axis these must be round
     }
     for body in &context.case.bodies {
         let BodyKind::Rigid(rigid) = &body.kind else { continue };
-        if let Some((found, expected)) = beside_plane(&rigid.shape, plane) {
+        if let Some((found, expected)) = beside_plane(&rigid.shape, plane, who) {
             context.error(&body.name.place, format!("= \"{}\": {found}", body.name.value), expected);
         }
         for place in out_of_plane(rigid) {
             let Body { name, .. } = body;
-            let found = format!(": 2D solids lie in the xy-plane, and \"{}\" would leave it", name.value);
+            let found = format!(": {who} lie in the xy-plane, and \"{}\" would leave it", name.value);
             context.error(&place, found, "motion along x and y, and spin about z");
         }
     }
 }
 
-/// Places of loads and motions of nodes along z.
-fn along_z(context: &Context<'_>) -> Vec<Place> {
+/// Places of loads and motions of nodes, and with `has_discs` of particles, along z.
+fn along_z(context: &Context<'_>, has_discs: bool) -> Vec<Place> {
     let mut across = Vec::new();
-    for support in context.case.supports.iter().filter(|support| !context.names_particles(&support.on)) {
+    let of_space = |on: &Selection| !has_discs && context.names_particles(on);
+    for support in context.case.supports.iter().filter(|support| !of_space(&support.on)) {
         if let Some(motion) = &support.motion[Z]
             && let Motion::Velocity(function) | Motion::Displacement(function) = &motion.value
             && !function.is_zero()
@@ -71,7 +83,7 @@ fn along_z(context: &Context<'_>) -> Vec<Place> {
         }
     }
     for load in &context.case.loads {
-        let of_particles = load.kind.on().is_some_and(|(on, _)| context.names_particles(on));
+        let of_particles = load.kind.on().is_some_and(|(on, _)| of_space(on));
         let along_z = match &load.kind {
             LoadKind::Force { force: components, .. }
             | LoadKind::Traction { traction: components, .. }
@@ -91,11 +103,11 @@ fn out_of_plane(rigid: &RigidBody) -> impl Iterator<Item = Place> {
     moves.filter(|function| !function.value.is_zero()).map(|function| function.place.clone())
 }
 
-/// Why a rigid shape does not meet the plane of 2D solids as a line in it, and what would; none where it does.
+/// Why a rigid shape does not meet the plane of 2D solids, or discs, as a line in it, and what would; none where it does.
 ///
-/// - `plane`: their z [m]
-fn beside_plane(shape: &RigidShape, plane: f64) -> Option<(String, String)> {
-    let at = || format!("the plane of the 2D solids, z = {}", quantity(plane, "m"));
+/// - `plane`: their z [m]; `who`: what lies in it
+fn beside_plane(shape: &RigidShape, plane: f64, who: &str) -> Option<(String, String)> {
+    let at = || format!("the plane of the {who}, z = {}", quantity(plane, "m"));
     let spans = |low: f64, high: f64| {
         let within = NEARLY * (high - low);
         let is_beside = plane <= low + within || plane >= high - within;
@@ -110,10 +122,7 @@ fn beside_plane(shape: &RigidShape, plane: f64) -> Option<(String, String)> {
     };
     match shape {
         RigidShape::Plane { normal, .. } => (normal.z.abs() > NEARLY).then(|| {
-            (
-                "its normal points out of the xy-plane, in which 2D solids lie".to_owned(),
-                "a normal along x and y".to_owned(),
-            )
+            (format!("its normal points out of the xy-plane, in which {who} lie"), "a normal along x and y".to_owned())
         }),
         RigidShape::Box { point, size } => spans(point.z, point.z + size.z),
         RigidShape::Cylinder { open: true, .. } => None,
@@ -122,7 +131,7 @@ fn beside_plane(shape: &RigidShape, plane: f64) -> Option<(String, String)> {
             spans(point.z.min(end), point.z.max(end))
         }
         RigidShape::Cylinder { axis, .. } if axis.z.abs() > NEARLY => Some((
-            "its axis is askew to the xy-plane, in which 2D solids lie".to_owned(),
+            format!("its axis is askew to the xy-plane, in which {who} lie"),
             "axis = \"z\", or an axis along x and y".to_owned(),
         )),
         RigidShape::Cylinder { point, radius, .. } | RigidShape::Sphere { point, radius } => centred(point.z, *radius),

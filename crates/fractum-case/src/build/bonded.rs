@@ -53,6 +53,7 @@ impl Context<'_> {
                     check_field(self, field, seen(&made.particles));
                 }
                 set_motion(&mut made.particles, &mut made.clumps, motion);
+                keep_in_plane(&mut made.particles);
             }
             if let Some(arrivals) = made.arrivals.take() {
                 let motion: EntryMotion = match motion {
@@ -251,6 +252,14 @@ fn seen(particles: &Particles) -> impl Iterator<Item = Vec3> {
         };
         std::iter::once(x).chain((0..3).flat_map(beside))
     })
+}
+
+/// Takes out of the motion of discs what a field has across their plane.
+fn keep_in_plane(particles: &mut Particles) {
+    if particles.thickness.is_some() {
+        particles.velocity.iter_mut().for_each(|velocity| velocity.z = 0.0);
+        particles.spin.iter_mut().for_each(|spin| (spin.x, spin.y) = (0.0, 0.0));
+    }
 }
 
 /// Gives particles the motion of their places, and clumps that of their centres of mass.

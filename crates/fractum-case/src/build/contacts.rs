@@ -35,15 +35,21 @@ pub struct PreparedFacets {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Outward facets of each solid body, in scene nodes; none of plane bodies.
+/// Outward facets of each solid body, in scene nodes; of plane bodies the edges that discs touch, which repeat their second node.
 pub(super) fn facets_of_parts(context: &Context<'_>, parts: &[Part], numbering: &Numbering) -> Vec<Vec<[u32; 3]>> {
     let scene = |n: u32| numbering.scene_node[n as usize];
     if let Some(division) = context.division {
         let of_body = |facets: &Vec<[u32; 3]>| facets.iter().map(|facet| facet.map(scene)).collect();
         return division.boundary.of_bodies.iter().map(of_body).collect();
     }
+    let has_discs = context.case.has_discs();
     let of = |part: &Part| match part.shape {
-        fem::ElementKind::T3 => Vec::new(),
+        fem::ElementKind::T3 if !has_discs => Vec::new(),
+        fem::ElementKind::T3 => {
+            let triangles = super::bodies::element_nodes(context, part).into_iter().map(|[a, b, c, _]| [a, b, c]);
+            let edges = topology::boundary_of_triangles(&triangles.collect::<Vec<_>>());
+            edges.iter().map(|edge| [edge.nodes[0], edge.nodes[1], edge.nodes[1]].map(scene)).collect()
+        }
         fem::ElementKind::T4 => {
             let facets = topology::boundary_of_tetrahedra(&super::bodies::element_nodes(context, part));
             facets.iter().map(|f| f.nodes.map(scene)).collect()

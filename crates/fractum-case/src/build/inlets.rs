@@ -72,9 +72,9 @@ pub(super) fn doubts(case: &Case) -> Vec<Diagnostic> {
 /// Time in which particles cross the inlet by their velocity and by gravity [s]; none where neither is there.
 fn crossing_time(case: &Case, body: &LooseBody, stream: &Stream) -> Option<f64> {
     let middle = match stream.region {
-        Region::Box { point, size } => point + 0.5 * size,
+        Region::Box { point, size } | Region::Rectangle { point, size } => point + 0.5 * size,
         Region::Cylinder { point, axis, length, .. } => point + axis * (0.5 * length),
-        Region::Sphere { point, .. } => point,
+        Region::Sphere { point, .. } | Region::Circle { point, .. } => point,
     };
     let velocity =
         Vec3::from_fn(|axis, _| body.initial_velocity[axis].as_ref().map_or(0.0, |field| field.value.at(middle)));
@@ -100,11 +100,11 @@ fn crossing_time(case: &Case, body: &LooseBody, stream: &Stream) -> Option<f64> 
 /// Extent of a region along a direction [m].
 fn extent(region: &Region, along: &Vec3) -> f64 {
     match region {
-        Region::Box { size, .. } => size.dot(&along.abs()),
+        Region::Box { size, .. } | Region::Rectangle { size, .. } => size.dot(&along.abs()),
         Region::Cylinder { axis, length, radius, .. } => {
             let cosine = axis.dot(along).abs().min(1.0);
             length * cosine + 2.0 * radius * (1.0 - cosine * cosine).sqrt()
         }
-        Region::Sphere { radius, .. } => 2.0 * radius,
+        Region::Sphere { radius, .. } | Region::Circle { radius, .. } => 2.0 * radius,
     }
 }

@@ -25,13 +25,13 @@ pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
         return None;
     }
     let particles = |body: &&Body| matches!(body.kind, BodyKind::Bonded(_) | BodyKind::Particles(_));
-    if let Some(Body { name, .. }) = case.bodies.iter().find(particles) {
+    if let Some(Body { name, .. }) = case.bodies.iter().find(particles).filter(|_| !case.has_discs()) {
         let found = format!(
-            "= \"{}\": plane solids touch no particles, and it passes through \"{}\"",
+            "= \"{}\": plane solids touch no spheres, and it passes through \"{}\"",
             name.value, bodies[0].name.value
         );
         let note = Diagnostic::warning(Code::NoContact, &name.place, found);
-        return Some(note.remedy("make the solid a rigid body, or model it in space"));
+        return Some(note.remedy("set thickness on loose particles, which makes discs of them; or make the solid rigid, or model it in space"));
     }
     let pieces = pieces(mesh, bodies);
     let other = pieces.iter().position(|piece| *piece != 0)?;

@@ -10,6 +10,7 @@ mod clumps;
 mod conditions;
 mod contact_pairs;
 mod contacts;
+mod discs;
 mod division;
 mod doubts;
 mod excavation;

@@ -130,7 +130,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].formulation", K::Choice(names::<Formulation>), "\"smoothed\" with damage, else \"standard\"", "Solid: strain and damage on edges, or the plain element"),
     key("bodies[].kinematics", K::Choice(names::<Kinematics>), "\"auto\"", "Solid: small strains, a frame that turns with each element, or small until a part turns in motion"),
     key("bodies[].plane", K::Choice(names::<Plane>), "\"strain\"", "Solid in 2D only: plane strain, plane stress, or a section through the y axis, about which the body is turned"),
-    key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in plane strain or plane stress only: thickness, > 0"),
+    key("bodies[].thickness", K::Quantity(D::LENGTH), "\"1 m\"", "Solid in plane strain or plane stress: thickness, > 0. Particles, if given: makes each of them a plane disc of this thickness instead of a sphere; all bodies of particles, and 2D solids beside them, have one thickness then"),
     key("bodies[].initial_velocity", K::Table, "", "Velocity at the start, by components; of a rigid body along its free axes, of particles with an inlet as they come in"),
     key("bodies[].initial_velocity.x", K::Field(D::VELOCITY), "0", "Component along x"),
     key("bodies[].initial_velocity.y", K::Field(D::VELOCITY), "0", "Component along y"),
@@ -138,8 +138,8 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].damage", K::Flag, "true", "Solid: false keeps the body elastic whatever its material says"),
     key("bodies[].damage_where", K::Condition, "", "Solid: condition on the edges that may be damaged; absent means all"),
     key("bodies[].strength_factor", K::Field(D::NONE), "1", "Solid: factor on the tensile strength, > 0"),
-    key("bodies[].shape", K::Choice(shapes), "", "Rigid: the shape, required there. Bonded: the shape that particles fill, any but plane. Particles: any but plane, filled with a cloud"),
-    key("bodies[].point", K::Point(D::LENGTH), "[0, 0, 0]", "Plane: a point on it; box: its lower corner; cylinder: centre of the face where it begins; sphere: its centre; rigid group and stl: point about which it turns"),
+    key("bodies[].shape", K::Choice(shapes), "", "Rigid: the shape, required there. Bonded: the shape that particles fill, any but plane. Particles: any but plane, filled with a cloud; rectangle or circle of discs, and of these alone"),
+    key("bodies[].point", K::PointOrPlane(D::LENGTH), "[0, 0, 0]", "Plane: a point on it; box and rectangle: its lower corner; cylinder: centre of the face where it begins; sphere and circle: its centre; rigid group and stl: point about which it turns"),
     key("bodies[].normal", K::Direction, "", "Rigid plane, required there: normal that points out of the body"),
     key("bodies[].axis", K::Direction, "\"x\"", "Cylinder, rigid or of loose particles: direction from its beginning to its end"),
     key("bodies[].ends", K::Choice(|| vec!["closed", "open"]), "\"closed\"", "Rigid cylinder: open takes the lids away. What is left is a wall without thickness, which particles feel from both sides and on its rims"),
@@ -167,9 +167,9 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].servo.between", K::Names, "", "With pressure, instead of an area: four rigid planes, each before the one opposite to it. The area is that between both pairs as they move"),
     key("bodies[].servo.speed", K::Quantity(D::VELOCITY), "required", "Largest speed, > 0"),
     key("bodies[].servo.slows_at", K::Quantity(D::NONE), "0.1", "Share of the force that is still missing where it slows down, above 0 and at most 1: the speed is proportional to what is missing from there on"),
-    key("bodies[].size", K::Point(D::LENGTH), "", "Box, required there: lengths of its edges along x, y, z, > 0"),
+    key("bodies[].size", K::PointOrPlane(D::LENGTH), "", "Box and rectangle, required there: lengths of its edges along x, y, z, > 0"),
     key("bodies[].length", K::Quantity(D::LENGTH), "", "Cylinder, required there: length, > 0; that of a bonded body lies along x"),
-    key("bodies[].radius", K::Quantity(D::LENGTH), "", "Cylinder and sphere, required there: radius, > 0"),
+    key("bodies[].radius", K::Quantity(D::LENGTH), "", "Cylinder, sphere and circle, required there: radius, > 0"),
     key("bodies[].file", K::Text, "", "Stl, required there: STL file, that of a shape to fill closed; loose and bonded particles: file of particles (CSV, LAMMPS data or dump, extended xyz, YADE text), bonded ones beside the shape that they fill; relative to the case file"),
     key("bodies[].velocity_unit", K::Unit(Some(D::VELOCITY)), "", "Loose, with a file: takes the velocities of the file, in this unit, and its rotations, in 1/s; otherwise they are left out"),
     key("bodies[].frame", K::Integer, "the last", "With a file of particles, a dump or an xyz file: number of the frame, from 0 on"),
@@ -177,7 +177,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].unit", K::Unit(Some(D::LENGTH)), "\"m\"", "Unit of the coordinates in the file"),
     key("bodies[].particles", K::Integer, "10000", "Bonded: number of particles, 20 to 20 million. Loose: number of particles, at most 20 million; without it and solid_fraction one in each cell of a grid as wide as 1.1 of the largest, or as many as an inlet brings"),
     key("bodies[].particle_radius", K::Quantity(D::LENGTH), "", "Mean particle radius, > 0; bonded: instead of their number; loose, required with a shape or a centre unless there is a clump: of clumps the radius of the sphere around the centre of mass that just holds one, as large as written by default"),
-    key("bodies[].centre", K::Point(D::LENGTH), "", "Loose: centre of a single particle, instead of a shape or a file; of a clump its centre of mass"),
+    key("bodies[].centre", K::PointOrPlane(D::LENGTH), "", "Loose: centre of a single particle, instead of a shape or a file; of a clump its centre of mass"),
     key("bodies[].clump[]", K::Tables, "", "Loose: spheres of which every particle is a rigid grain, in any frame: 1 to 100, which touch or overlap. Mass and moments of inertia are those of the space that they cover, counted once. Each grain is scaled so that the sphere around its centre of mass that just holds it has the radius of the particle (particle_radius, dispersion, sizes or the file); without any it is as large as written. Explicit runs only, of one process; not beside an inlet, a periodic box or heat"),
     key("bodies[].clump[].at", K::Point(D::LENGTH), "required", "Centre of the sphere"),
     key("bodies[].clump[].radius", K::Quantity(D::LENGTH), "required", "Radius of the sphere, > 0"),
@@ -193,7 +193,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("bodies[].sizes.largest", K::Quantity(D::LENGTH), "", "With a law, required there: largest diameter, at most 100 times the smallest"),
     key("bodies[].sizes.median", K::Quantity(D::LENGTH), "", "log-normal only, required there: diameter below which half of the mass lies, before it is cut off at both ends"),
     key("bodies[].sizes.deviation", K::Quantity(D::NONE), "", "log-normal only, required there: standard deviation of the natural logarithm, above 0 and at most 2"),
-    key("bodies[].solid_fraction", K::Quantity(D::NONE), "0.25", "Loose, with a shape: volume of the particles over that of the shape, above 0 and at most 0.9, instead of particles; the default is that of sizes, groups and STL files. One size reaches 0.64 without walls, less in narrow shapes, wide curves more; none touch. Of clumps the spheres around them count"),
+    key("bodies[].solid_fraction", K::Quantity(D::NONE), "0.25", "Loose, with a shape: volume of the particles over that of the shape, of discs area over area, above 0 and at most 0.9, instead of particles; the default is that of sizes, groups and STL files. One size reaches 0.64 without walls, less in narrow shapes, wide curves more; none touch. Of clumps the spheres around them count"),
     key("bodies[].inlet", K::Table, "", "Loose, with a shape: the particles come in through the shape as time goes on, each at a free place by chance and with the body's initial_velocity; by one of mass_rate, number_rate. Explicit runs only"),
     key("bodies[].inlet.mass_rate", K::Quantity(D::MASS_RATE), "", "Mass that comes in a time, > 0"),
     key("bodies[].inlet.number_rate", K::Quantity(D::RATE), "", "Number of particles that come in a time, > 0"),
@@ -250,5 +250,5 @@ fn body_kinds() -> Vec<&'static str> {
 }
 
 fn shapes() -> Vec<&'static str> {
-    vec!["plane", "box", "cylinder", "sphere", "group", "stl"]
+    vec!["plane", "box", "cylinder", "sphere", "group", "stl", "rectangle", "circle"]
 }

@@ -16,6 +16,8 @@ pub struct LooseBody {
     pub source: LooseSource,
     /// What each of them is, where it is no single sphere.
     pub clump: Option<Spanned<Clump>>,
+    /// Thickness of plane discs [m]; none of spheres.
+    pub thickness: Option<Spanned<f64>>,
     /// Sets of its particles by name, each with a condition on the position.
     pub groups: Vec<(Spanned<String>, Field)>,
     /// Initial velocity [m/s] along x, y, z; `None` = at rest.

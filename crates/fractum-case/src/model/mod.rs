@@ -281,6 +281,12 @@ impl Case {
         self.solver.kind == SolverKind::Explicit && (self.flows.gas.is_some() || self.loads.iter().any(pulse))
     }
 
+    /// Whether its loose particles are plane discs.
+    pub fn has_discs(&self) -> bool {
+        let is_disc = |body: &Body| matches!(&body.kind, BodyKind::Particles(own) if own.thickness.is_some());
+        self.bodies.iter().any(is_disc)
+    }
+
     /// Whether a stage takes bodies out or puts some in.
     pub fn excavates(&self) -> bool {
         self.excavation.is_some()

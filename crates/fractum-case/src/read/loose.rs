@@ -9,12 +9,18 @@ use super::{file_unit, inlet, metres, sizes};
 use crate::model::{Amount, CloudShape, Clump, LooseBody, LooseSource, Region, Sizes, Turn};
 use crate::reader::Table;
 use crate::reader::presence::optional;
-use crate::reader::vectors::{direction, initial_velocity, point};
+use crate::reader::vectors::{direction, initial_velocity, point, point_in_plane};
 use crate::unit::Dimension;
 use crate::{Diagnostic, Spanned};
 
 /// Reads loose particles of the material at `material`, which is nothing where it is wrong.
 pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseBody> {
+    let thickness = optional(table, "thickness", |name| table.quantity(name).positive().spanned().given());
+    let is_disc = table.has("thickness");
+    if is_disc {
+        table.refuse("clump", "beside thickness: clumps are rigid grains of spheres in space");
+        table.refuse("inlet", "beside thickness: only spheres come in as time goes on");
+    }
     let shape = clump_shape(table);
     let turn = turn(table, shape.is_some());
     let size = shape.as_ref().and_then(|shape| shape.as_ref()).map(|shape| shape.value.radius());
@@ -22,9 +28,9 @@ pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseB
     let source = if table.has("file") && !is_stl(table) {
         from_file(table, shape.is_some())
     } else if has_centre {
-        single(table, size)
+        single(table, size, is_disc)
     } else {
-        cloud(table, size)
+        cloud(table, size, is_disc)
     };
     if table.has("inlet") {
         table.refuse("groups", "beside inlet: where a particle comes in is not known before");
@@ -32,6 +38,12 @@ pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseB
     }
     let groups = groups(table);
     let initial_velocity = initial_velocity(table);
+    if let Some([_, _, Some(along_z)]) = initial_velocity.as_ref().filter(|_| is_disc) {
+        let note = Diagnostic::error(&along_z.place, "moves discs out of their plane");
+        table
+            .reader
+            .note(note.expected("components along x and y").remedy("spheres move along z: leave thickness out"));
+    }
     let clump = match (shape, turn?) {
         (None, _) => None,
         (Some(shape), turn) => {
@@ -44,6 +56,7 @@ pub(super) fn loose(table: &Table<'_>, material: Option<usize>) -> Option<LooseB
         material: material?,
         source: source?,
         clump,
+        thickness: thickness?,
         groups: groups?,
         initial_velocity: initial_velocity?,
     })
@@ -105,11 +118,11 @@ const OF_SHAPES: [&str; 12] = [
 /// A particle at a given place.
 ///
 /// - `size`: radius of its clump as it is written [m]
-fn single(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
+fn single(table: &Table<'_>, size: Option<f64>, is_disc: bool) -> Option<LooseSource> {
     for key in OF_SHAPES.into_iter().chain(["seed", "unit", "velocity_unit", "frame", "species"]) {
         table.refuse(key, "beside centre, at which a single particle is");
     }
-    let centre = point(table, "centre").required();
+    let centre = if is_disc { point_in_plane(table, "centre") } else { point(table, "centre") }.required();
     let radius = radius(table, size);
     Some(LooseSource::Single { centre: centre?, radius: radius? })
 }
@@ -149,7 +162,7 @@ fn from_file(table: &Table<'_>, is_clump: bool) -> Option<LooseSource> {
     })
 }
 
-fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
+fn cloud(table: &Table<'_>, size: Option<f64>, is_disc: bool) -> Option<LooseSource> {
     if !table.has("shape") {
         let note = Diagnostic::error(&table.place, "has none of shape, file and centre");
         let expected = "a shape to fill with particles, a file of particles, or the centre of a single one";
@@ -162,7 +175,12 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
     let (graded, by_fraction) = (table.has("sizes"), table.has("solid_fraction"));
     let kinds = [Kind::Box, Kind::Cylinder, Kind::Sphere, Kind::Group, Kind::Stl].into_iter().zip(SHAPES);
     let kinds: Vec<(&'static str, Kind)> = kinds.map(|(kind, name)| (name, kind)).collect();
-    let kind = table.one_of("shape", if has_inlet { &kinds[..3] } else { &kinds }).spanned().given();
+    let kinds: &[(&'static str, Kind)] = match (is_disc, has_inlet) {
+        (true, _) => &[("rectangle", Kind::Box), ("circle", Kind::Sphere)],
+        (false, true) => &kinds[..3],
+        (false, false) => &kinds[..],
+    };
+    let kind = table.one_of("shape", kinds).spanned().given();
     let radius = if graded {
         for key in ["particle_radius", "dispersion"] {
             table.refuse(key, "beside sizes");
@@ -183,9 +201,9 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
         let dispersion = table.quantity("dispersion").check(|kappa| (0.0..=1.0).contains(kappa), DISPERSION_RANGE);
         dispersion.or_if_absent(0.0)
     };
-    let grading = if graded { sizes::sizes(table).map(Some) } else { Some(None) };
+    let grading = if graded { sizes::sizes(table, is_disc).map(Some) } else { Some(None) };
     let shape = match &kind {
-        Some(kind) => shape(table, kind.value).map(|shape| Spanned::new(shape, kind.place.clone())),
+        Some(kind) => shape(table, kind.value, is_disc).map(|shape| Spanned::new(shape, kind.place.clone())),
         None => {
             table.pass_over(&["point", "size", "axis", "length", "radius", "file", "unit", "group"]);
             None
@@ -214,7 +232,8 @@ fn cloud(table: &Table<'_>, size: Option<f64>) -> Option<LooseSource> {
     }
     if by_amount {
         let of_one_law = |(radius, dispersion): (f64, f64)| {
-            Grading::uniform(radius * (2.0 - dispersion), radius * (2.0 + dispersion))
+            let uniform = if is_disc { Grading::uniform_discs } else { Grading::uniform };
+            uniform(radius * (2.0 - dispersion), radius * (2.0 + dispersion))
         };
         let grading = grading?.or_else(|| radius.zip(dispersion).map(of_one_law));
         let (shape, grading, seed, count) = (shape?, grading?, seed?, count?);
@@ -237,12 +256,18 @@ fn amount(table: &Table<'_>, counted: bool) -> Option<Option<Spanned<Amount>>> {
     Some(Some(share.or_if_absent(Spanned::new(Amount::Fraction(0.25), table.place_of("solid_fraction")))?))
 }
 
-fn shape(table: &Table<'_>, kind: Kind) -> Option<CloudShape> {
-    let start = || point(table, "point").or_if_absent(Vec3::zeros());
+fn shape(table: &Table<'_>, kind: Kind, is_disc: bool) -> Option<CloudShape> {
+    let at = if is_disc { point_in_plane } else { point };
+    let start = || at(table, "point").or_if_absent(Vec3::zeros());
     let length = |key: &'static str| table.quantity(key).positive().required();
     Some(CloudShape::Region(match kind {
+        Kind::Box if is_disc => {
+            let (start, size) = (start(), at(table, "size"));
+            let size = size.check(|size| size.xy().min() > 0.0, "two lengths above 0").required();
+            Region::Rectangle { point: start?, size: size? }
+        }
         Kind::Box => {
-            let (start, size) = (start(), point(table, "size"));
+            let (start, size) = (start(), at(table, "size"));
             let size = size.check(|size| size.min() > 0.0, "three lengths above 0").required();
             Region::Box { point: start?, size: size? }
         }
@@ -254,7 +279,10 @@ fn shape(table: &Table<'_>, kind: Kind) -> Option<CloudShape> {
         }
         Kind::Sphere => {
             let (start, wide) = (start(), length("radius"));
-            Region::Sphere { point: start?, radius: wide? }
+            match is_disc {
+                true => Region::Circle { point: start?, radius: wide? },
+                false => Region::Sphere { point: start?, radius: wide? },
+            }
         }
         Kind::Group => return Some(CloudShape::Group(table.text("group").spanned().required()?)),
         Kind::Stl => {

@@ -19,16 +19,19 @@ enum Law {
 }
 
 /// Reads the distribution of diameters of a body that has one.
-pub(super) fn sizes(body: &Table<'_>) -> Option<Grading> {
+///
+/// - `of_discs`: whether the particles are discs
+pub(super) fn sizes(body: &Table<'_>, of_discs: bool) -> Option<Grading> {
     let table = body.table("sizes")?;
     let grading = match exactly_one(&table, &["passing", "law"]) {
         Some("passing") => {
             for key in ["smallest", "largest", "median", "deviation"] {
                 table.refuse(key, "beside passing, whose sieves say it");
             }
-            table.read("passing", |node| passing(&table, node)).required()
+            let spheres = table.read("passing", |node| passing(&table, node)).required();
+            spheres.map(|grading| if of_discs { grading.of_discs() } else { grading })
         }
-        Some(_) => law(&table),
+        Some(_) => law(&table, of_discs),
         None => {
             table.pass_over(&["passing", "law", "smallest", "largest", "median", "deviation"]);
             None
@@ -47,7 +50,7 @@ pub(super) fn sizes(body: &Table<'_>) -> Option<Grading> {
     Some(grading)
 }
 
-fn law(table: &Table<'_>) -> Option<Grading> {
+fn law(table: &Table<'_>, of_discs: bool) -> Option<Grading> {
     let laws = [(SIZE_LAWS[0], Law::Uniform), (SIZE_LAWS[1], Law::LogNormal)];
     let law = table.one_of("law", &laws).required();
     let length = |key: &'static str| table.quantity(key).positive().required();
@@ -73,7 +76,11 @@ fn law(table: &Table<'_>) -> Option<Grading> {
             table.reader.note(note.expected("a diameter between smallest and largest"));
             None
         }
-        (Law::LogNormal, Some((median, deviation))) => Some(Grading::log_normal(median, deviation, smallest, largest)),
+        (Law::LogNormal, Some((median, deviation))) => {
+            let spheres = Grading::log_normal(median, deviation, smallest, largest);
+            Some(if of_discs { spheres.of_discs() } else { spheres })
+        }
+        _ if of_discs => Some(Grading::uniform_discs(smallest, largest)),
         _ => Some(Grading::uniform(smallest, largest)),
     }
 }

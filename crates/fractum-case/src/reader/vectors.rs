@@ -43,6 +43,21 @@ pub(crate) fn point<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading
     table.read(name, |node| triple(table.reader, node, table.dimension(name)))
 }
 
+/// Takes a point in the plane of discs: two quantities of the key's dimension.
+pub(crate) fn point_in_plane<'t, 'a>(table: &'t Table<'a>, name: &'static str) -> Reading<'t, 'a, Vec3> {
+    table.read(name, |node| match &node.value {
+        Value::Array(items) if items.len() == 2 => {
+            let [x, y] = [0, 1].map(|i| table.reader.quantity(&items[i], table.dimension(name)));
+            Some(Vec3::new(x?, y?, 0.0))
+        }
+        _ => {
+            let note = Diagnostic::error(&node.place, node.found());
+            table.reader.note(note.expected("a list of two numbers: discs lie in the xy-plane"));
+            None
+        }
+    })
+}
+
 fn triple(reader: &Reader, node: &Node, dimension: Dimension) -> Option<Vec3> {
     match &node.value {
         Value::Array(items) if items.len() == 3 => {

@@ -25,14 +25,19 @@ fn to_line(w: &Vec3, u: &Vec3) -> Vec3 {
 
 /// Vector from `x` to the closest place of the edge from a to b.
 pub(crate) fn closest_on_segment(x: &Vec3, a: &Vec3, b: &Vec3) -> Vec3 {
+    closest_on_line(x, a, b).1
+}
+
+/// Closest place of the line from a to b to `x`, and the vector from `x` to it; at an end its side is that from the end to itself.
+pub(crate) fn closest_on_line(x: &Vec3, a: &Vec3, b: &Vec3) -> (Place, Vec3) {
     let (u, w) = (b - a, a - x);
     let along = -w.dot(&u);
     if along <= 0.0 {
-        w
+        (Place::Side(0), w)
     } else if along >= u.norm_squared() {
-        b - x
+        (Place::Side(1), b - x)
     } else {
-        to_line(&w, &u)
+        (Place::Inside, to_line(&w, &u))
     }
 }
 

@@ -8,14 +8,15 @@ use fractum_math::{Ragged, Vec3, numbered_parts};
 use crate::SurfaceError;
 pub(crate) use closest::area_vector;
 pub(crate) use closest::closest_on_segment;
-use closest::{Place, closest_on_polygon, closest_on_triangle};
+use closest::{Place, closest_on_line, closest_on_polygon, closest_on_triangle};
 
 /// Area of a facet below which it is degenerate, over the square of its longest edge.
 const DEGENERATE: f64 = 1e-10;
 /// Distance of a corner from the plane of its facet that still counts as planar, over the longest edge.
 const PLANAR: f64 = 1e-6;
 
-/// The facets of one body - triangles, quads, planar convex polygons - with their edges.
+/// The facets of one body - triangles, quads, planar convex polygons - with their edges; or the lines around a plane body, which meet at points: a line is
+/// a facet then, and each of its ends an edge from a point to itself.
 ///
 /// It knows how facets share edges and points, not where the points are: those may move. A *feature* is a facet, an
 /// edge or a point; features are numbered in this order: first all facets, then all edges, then all points.
@@ -51,7 +52,7 @@ impl FacetMesh {
     /// Checks facets and finds their edges.
     ///
     /// - `points` [m]: coordinates at the start
-    /// - `facets`: corners of each in order; triangles, quads or planar convex polygons
+    /// - `facets`: corners of each in order; triangles, quads or planar convex polygons, or both ends of lines
     ///
     /// # Errors
     /// Missing or non-finite points, degenerate, warped or concave facets, edges with more than two facets.
@@ -68,7 +69,8 @@ impl FacetMesh {
         for (facet, corners) in facets.iter().enumerate() {
             let corners = corners.as_ref();
             for k in 0..corners.len() {
-                let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+                let next = if corners.len() == 2 { k } else { (k + 1) % corners.len() };
+                let (a, b) = (corners[k], corners[next]);
                 sides.push(([a.min(b), a.max(b)], facet as u32, place));
                 place += 1;
             }
@@ -211,7 +213,10 @@ impl FacetMesh {
     #[inline]
     pub(crate) fn closest(&self, facet: u32, points: &[Vec3], x: &Vec3) -> (u32, Vec3) {
         let corners = self.corners(facet);
-        let (place, offset) = if self.triangles {
+        let (place, offset) = if let &[a, b] = corners {
+            let [a, b] = [a, b].map(|end| &points[end as usize]);
+            closest_on_line(x, a, b)
+        } else if self.triangles {
             closest_on_triangle(x, [corners[0], corners[1], corners[2]].map(|c| &points[c as usize]))
         } else {
             closest_on_polygon(x, corners, points)
@@ -275,6 +280,9 @@ fn check_facet(points: &[Vec3], facet: usize, corners: &[u32]) -> Result<(), Sur
     let area_vector: Vec3 = area_vector.sum();
     let area = area_vector.norm();
     let repeated = (0..corners.len()).any(|k| corners[..k].contains(&corners[k]));
+    if corners.len() == 2 && !repeated && longest > 0.0 {
+        return Ok(());
+    }
     if corners.len() < 3 || repeated || area <= DEGENERATE * longest * longest {
         return Err(SurfaceError::Degenerate { facet, at, area, longest });
     }
@@ -309,7 +317,7 @@ mod tests {
             Err(SurfaceError::MissingPoint { facet: 0, point: 9, points: 4 })
         ));
         assert!(matches!(FacetMesh::new(&points, &[[0, 1, 1]]), Err(SurfaceError::Degenerate { .. })));
-        assert!(matches!(FacetMesh::new(&points, &[[0, 1]]), Err(SurfaceError::Degenerate { .. })));
+        assert!(matches!(FacetMesh::new(&points, &[[0, 0]]), Err(SurfaceError::Degenerate { .. })));
         let line = [Vec3::zeros(), Vec3::x(), Vec3::x() * 2.0];
         assert!(matches!(FacetMesh::new(&line, &[[0, 1, 2]]), Err(SurfaceError::Degenerate { .. })));
         let mut warped = points.clone();

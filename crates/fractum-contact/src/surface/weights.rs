@@ -9,17 +9,27 @@ impl FacetMesh {
     /// Weights add up to 1 and reproduce the place, Σ w p = place: force and moment pass exactly. Linear along an edge
     /// and in a triangle; Wachspress' coordinates in a polygon (Meyer et al. 2002), which are linear on its border.
     pub fn share(&self, feature: u32, place: &Vec3, points: &[Vec3], mut add: impl FnMut(u32, f64)) {
+        // Share of the way from a to b.
+        let along = |[a, b]: [u32; 2]| {
+            let way = points[b as usize] - points[a as usize];
+            (place - points[a as usize]).dot(&way) / way.norm_squared()
+        };
         match self.feature(feature) {
             Feature::Point(point) => add(point, 1.0),
             Feature::Edge(edge) => {
                 let [a, b] = self.edge(edge);
-                let along = points[b as usize] - points[a as usize];
-                let t = (place - points[a as usize]).dot(&along) / along.norm_squared();
+                let t = if a == b { 0.0 } else { along([a, b]) };
                 add(a, 1.0 - t);
                 add(b, t);
             }
             Feature::Facet(facet) => {
                 let corners = self.corners(facet);
+                if let &[a, b] = corners {
+                    let t = along([a, b]);
+                    add(a, 1.0 - t);
+                    add(b, t);
+                    return;
+                }
                 let count = corners.len();
                 let p = |k: usize| points[corners[k % count] as usize];
                 let normal = area_vector(corners, points);
@@ -56,6 +66,11 @@ mod tests {
             let at = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
             (0..count).map(|k| Vec3::new(at(k).cos() * 1.3, at(k).sin(), 0.4)).collect()
         };
+        let line = [Vec3::new(0.2, 0.1, 0.0), Vec3::new(-0.4, 0.9, 0.0)];
+        let surface = FacetMesh::new(&line, &[[0, 1]]).unwrap();
+        let values = surface.interpolate(0, &(line[0] * 0.3 + line[1] * 0.7), &line, &line);
+        assert!((values - (line[0] * 0.3 + line[1] * 0.7)).norm() < 1e-15);
+        assert_eq!(surface.interpolate(surface.edge_feature(1), &line[1], &line, &line), line[1]);
         for count in 3..8u32 {
             let points = ring(count as usize);
             let surface = FacetMesh::new(&points, &[(0..count).collect::<Vec<_>>()]).unwrap();

@@ -23,7 +23,10 @@ pub(crate) const BLOCK: usize = 1024;
 /// Particles that one process has as a whole, where several share them, and whose bonds are computed together.
 pub(crate) const SHARED: usize = 2 * BLOCK;
 
-/// Discrete elements: spheres that move and turn. One entry per particle in every array.
+/// Degrees of freedom that plane discs do not have: motion along z, rotation about x and y.
+const OUT_OF_PLANE: u8 = 0b01_1100;
+
+/// Discrete elements: spheres that move and turn, or discs in the xy-plane. One entry per particle in every array.
 #[derive(Clone, Debug, Default)]
 pub struct Particles {
     /// Centre [m].
@@ -40,12 +43,14 @@ pub struct Particles {
     pub moment: Vec<Vec3>,
     /// Mass [kg].
     pub mass: Vec<f64>,
-    /// Moment of inertia about any axis [kg m²].
+    /// Moment of inertia about any axis, of discs about z [kg m²].
     pub inertia: Vec<f64>,
     /// Radius [m]; negative while the particle [is not in the run](Particles::take_out).
     pub radius: Vec<f64>,
     /// Bit d set: degree of freedom d (0–2 translation, 3–5 rotation) keeps its velocity whatever the forces.
     pub held: Vec<u8>,
+    /// Thickness [m] where all of them are plane discs; none of spheres.
+    pub thickness: Option<f64>,
 }
 
 impl Particles {
@@ -81,7 +86,33 @@ impl Particles {
             inertia,
             radius,
             held: vec![0; n],
+            thickness: None,
         })
+    }
+
+    /// Plane discs at rest, of one density [kg/m³] and thickness [m]: they keep to the xy-plane.
+    ///
+    /// # Errors
+    /// Those of [`Particles::at_rest`].
+    pub fn discs_at_rest(
+        position: Vec<Vec3>,
+        radius: Vec<f64>,
+        density: f64,
+        thickness: f64,
+    ) -> Result<Self, DemError> {
+        let mut discs = Particles::at_rest(position, radius, density)?;
+        for (i, r) in discs.radius.iter().enumerate() {
+            discs.mass[i] = density * std::f64::consts::PI * r * r * thickness;
+            discs.inertia[i] = 0.5 * discs.mass[i] * r * r;
+        }
+        discs.held.fill(OUT_OF_PLANE);
+        discs.thickness = Some(thickness);
+        Ok(discs)
+    }
+
+    /// Whether a particle is held, but for what discs do not do anyway.
+    pub fn is_held(&self, particle: usize) -> bool {
+        self.held[particle] & !(if self.thickness.is_some() { OUT_OF_PLANE } else { 0 }) != 0
     }
 
     /// Number of particles.
@@ -177,6 +208,23 @@ mod tests {
         (0..100).for_each(|_| motion.kick_and_drift(&mut particles));
         assert!((particles.position[0].y - 3.0).abs() < 1e-12);
         assert!((particles.position[1].y + 5.0).abs() < 1e-9, "{}", particles.position[1].y);
+    }
+
+    #[test]
+    fn a_disc_keeps_to_its_plane() {
+        let mut discs = Particles::discs_at_rest(vec![Vec3::zeros()], vec![0.1], 1000.0, 0.5).unwrap();
+        let mass = 5.0 * std::f64::consts::PI;
+        assert!((discs.mass[0] / mass - 1.0).abs() < 1e-15 && (discs.inertia[0] / (5e-3 * mass) - 1.0).abs() < 1e-15);
+        (discs.force[0], discs.moment[0]) = (Vec3::repeat(mass), Vec3::repeat(5e-3 * mass));
+        let mut motion = CentralDifference::new(&discs, 0.01, ParticleDamping::default());
+        motion.kick_and_drift(&mut discs);
+        let along = discs.velocity[0];
+        assert!(along.z == 0.0 && discs.spin[0].xy().norm() == 0.0 && along.x > 0.0);
+        assert!((discs.spin[0].z / along.x - 1.0).abs() < 1e-14 && !discs.is_held(0));
+        assert_eq!(
+            discs.kinetic_energy(),
+            0.5 * (discs.mass[0] * along.norm_squared() + discs.inertia[0] * discs.spin[0].z.powi(2))
+        );
     }
 
     #[test]

@@ -42,6 +42,26 @@ impl AccountedSpring {
         self.energy
     }
 
+    /// Whether the contact begins.
+    #[inline]
+    pub(super) fn is_new(&self) -> bool {
+        *self == AccountedSpring::default()
+    }
+
+    /// Force at the last step [N].
+    #[inline]
+    pub(super) fn force(&self) -> f64 {
+        self.force
+    }
+
+    /// Takes the energy of an overlap [m] for what it has taken: where the normal turns, steps along the last one miss some of it. What it had taken beyond
+    /// it [J].
+    #[inline]
+    pub(super) fn take_energy_of(&mut self, stiffness: f64, overlap: f64) -> f64 {
+        let before = core::mem::replace(&mut self.energy, 0.5 * stiffness * overlap * overlap);
+        before - self.energy
+    }
+
     /// Force of the spring [N].
     #[inline]
     pub(super) fn press(&mut self, pressed: &Pressed) -> f64 {
@@ -49,7 +69,7 @@ impl AccountedSpring {
         let full = stiffness * overlap;
         let damper = if dt > 0.0 { viscosity * way / dt } else { 0.0 };
         let per_force = dt * dt / mass;
-        let is_new = *self == AccountedSpring::default();
+        let is_new = self.is_new();
         self.energy += 0.5 * self.force * way;
         let force = if is_new && way > overlap {
             // (F (w + w') = k δ (δ + w'), with the way after, w' = w'' - F Δt²/m.

@@ -44,6 +44,8 @@ pub struct MaterialPair {
     pub effective_shear_modulus: f64,
     /// Work of adhesion W: energy that separates a unit of area [J/m²]; 0 without adhesion.
     pub work_of_adhesion: f64,
+    /// Thickness t of plane discs [m]; none of spheres.
+    pub thickness: Option<f64>,
     /// Friction and damping; a damping ratio ζ gives the restitution [`restitution_of_damping`](super::restitution_of_damping)
     /// at every speed.
     pub surface: ContactParameters,
@@ -58,8 +60,22 @@ impl MaterialPair {
             effective_modulus: sum(ElasticMaterial::normal_compliance),
             effective_shear_modulus: sum(ElasticMaterial::shear_compliance),
             work_of_adhesion: 0.0,
+            thickness: None,
             surface,
         }
+    }
+
+    /// The same of plane discs, where there is a thickness [m].
+    #[inline]
+    pub fn of_thickness(self, thickness: Option<f64>) -> Self {
+        MaterialPair { thickness, ..self }
+    }
+
+    /// Effective radius R* of a particle on a ground of the given mean curvature [m]: a disc feels that of the section, which is twice as large.
+    #[inline]
+    pub fn radius_on(&self, radius: f64, curvature: f64) -> f64 {
+        let curvature = if self.thickness.is_some() { 2.0 * curvature } else { curvature };
+        1.0 / (1.0 / radius + curvature)
     }
 
     /// The same, with a work of adhesion W ≥ 0 [J/m²].
@@ -84,7 +100,12 @@ impl MaterialPair {
 /// stiffnesses, c = 2 ζ √(m* k). Where it begins or ends within a step its force is the one that gives back the energy
 /// it has taken.
 ///
-/// Johnson, *Contact Mechanics* (1985), eqs (3.36), (4.22), (7.43); Antypov and Elliott (2011) for the damping.
+/// *Plane discs* touch along a line: F_n = k δ + c dδ/dt with k = π/4 E* t and the tangential stiffness π G* t, whatever their radii. The exact approach of
+/// two cylinders has a logarithm in it that depends on what is far from the contact (Johnson, section 5.6); the straight line is that of Popov, chapter 5,
+/// and the ratio of both stiffnesses that of spheres. They begin and end as flat contacts do.
+///
+/// Johnson, *Contact Mechanics* (1985), eqs (3.36), (4.22), (7.43); Popov, *Contact Mechanics and Friction* (2010); Antypov and Elliott (2011) for the
+/// damping.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hertz {
     /// k_h [N/m^(3/2)]; the normal stiffness of a flat contact [N/m].
@@ -103,8 +124,10 @@ pub struct Hertz {
     pub pull: f64,
     /// Gap h across which it acts [m].
     pub reach: f64,
-    /// Effective mass m* [kg] of a flat contact, whose stiffnesses do not grow with the overlap; none of a round one.
+    /// Effective mass m* [kg] of a contact whose stiffnesses do not grow with the overlap: of a flat one, or of discs.
     pub flat: Option<f64>,
+    /// Whether that is of discs, whose normal turns: the energy of the spring is that of the overlap.
+    pub of_discs: bool,
 }
 
 /// What a Hertz contact remembers.
@@ -127,9 +150,16 @@ pub struct HertzMemory {
 
 impl Hertz {
     /// The law of two bodies of effective radius R* = R₁R₂/(R₁ + R₂) [m] and effective mass m* = m₁m₂/(m₁ + m₂) [kg];
-    /// a flat or very heavy partner counts as infinite, so that the sphere's own value is left.
+    /// a flat or very heavy partner counts as infinite, so that the particle's own value is left.
     #[inline]
     pub fn new(pair: &MaterialPair, effective_radius: f64, effective_mass: f64) -> Self {
+        if let Some(thickness) = pair.thickness {
+            let normal = 0.25 * core::f64::consts::PI * pair.effective_modulus * thickness;
+            let tangential = core::f64::consts::PI * pair.effective_shear_modulus * thickness;
+            let flat = Hertz::flat([normal, tangential], pair.surface, effective_radius, effective_mass);
+            let rolling = Rolling::of_disc(pair.surface.rolling_friction, effective_radius, effective_mass);
+            return Hertz { rolling, of_discs: true, ..flat };
+        }
         let root = effective_radius.sqrt();
         let normal = 4.0 / 3.0 * pair.effective_modulus * root;
         let tangential = 8.0 * pair.effective_shear_modulus * root;
@@ -145,6 +175,7 @@ impl Hertz {
             pull,
             reach,
             flat: None,
+            of_discs: false,
         }
     }
 
@@ -164,6 +195,7 @@ impl Hertz {
             pull: 0.0,
             reach: 0.0,
             flat: Some(effective_mass),
+            of_discs: false,
         }
     }
 
@@ -184,12 +216,35 @@ impl Hertz {
 }
 
 impl Hertz {
-    /// Force of a round contact at the last step on j [N].
+    /// Forces [N] of spring and damper of discs of the effective mass m* [kg] at an overlap δ > 0, and the energy that the spring has lost since the last
+    /// step where what it pressed on has gone [J].
+    ///
+    /// The damper acts for the part of the first step in which they touch. It sees the velocity of half a step before, which lets it act as
+    /// c √(1 + c Δt/2m*): it is the smaller by that.
+    #[inline]
+    fn press_discs(
+        &self,
+        mass: f64,
+        overlap: f64,
+        approach: f64,
+        dt: f64,
+        spring: &mut AccountedSpring,
+    ) -> (f64, f64, f64) {
+        let way = approach * dt;
+        let part = if spring.is_new() && way > overlap { 0.5 + overlap / way } else { 1.0 };
+        let viscosity = part * self.damping / (1.0 + 0.25 * self.damping * dt / mass);
+        let force = spring.press(&Pressed { stiffness: self.normal, mass, viscosity, overlap, way, dt });
+        let whole = force == self.normal * overlap;
+        let lost = if whole { spring.take_energy_of(self.normal, overlap).max(0.0) } else { 0.0 };
+        (force, (viscosity * approach).max(-force), lost)
+    }
+
+    /// Force of a contact of spheres or discs at the last step on j [N].
     ///
     /// - `normal`: unit normal from i to j; `overlap` [m]: where the pull acts across a gap
     pub fn last_force(&self, memory: &HertzMemory, normal: &Vec3, overlap: f64) -> Vec3 {
-        let HertzMemory { slip, drag, root, damper, .. } = memory;
-        let elastic = self.normal * root * root * root;
+        let HertzMemory { slip, drag, root, damper, spring, .. } = memory;
+        let elastic = if self.of_discs { spring.force() } else { self.normal * root * root * root };
         let overlap = if *root > 0.0 { 0.0 } else { overlap.clamp(-self.reach, 0.0) };
         normal * (elastic + damper - self.adhesion(overlap).0) - slip * (self.tangential * root) - drag
     }
@@ -237,10 +292,17 @@ impl ContactLaw for Hertz {
             };
         }
         let (pull, bound) = self.adhesion(overlap);
-        let (elastic, compressed, root) =
-            self.elastic(overlap.max(0.0), approach * motion.dt, motion.dt, &mut old.spring);
+        let mut lost = 0.0;
+        let (elastic, damper, compressed, root) = if let (true, Some(mass)) = (self.of_discs, self.flat) {
+            let (elastic, damper, gone) = self.press_discs(mass, overlap, approach, motion.dt, &mut old.spring);
+            lost = gone;
+            (elastic, damper, old.spring.energy(), 1.0)
+        } else {
+            let (elastic, compressed, root) =
+                self.elastic(overlap.max(0.0), approach * motion.dt, motion.dt, &mut old.spring);
+            (elastic, (self.damping * root.sqrt() * approach).max(-elastic), compressed, root)
+        };
         let viscosity = self.damping * root.sqrt();
-        let damper = (viscosity * approach).max(-elastic);
         let normal_force = elastic + damper;
 
         // The spring lives in the tangent plane of the moment; turned there it keeps its length.
@@ -277,6 +339,9 @@ impl ContactLaw for Hertz {
             friction: work + old_spring - spring,
             damping: 0.5 * ((old.damper + damper) * approach + (old.drag + drag).dot(&across)) * motion.dt,
         };
+        if lost > 0.0 {
+            force.damping += lost;
+        }
         if self.rolling.arm > 0.0 && overlap <= 0.0 {
             force.friction += old.rolling.stored();
             force.damping += old.rolling.last_damping(motion);

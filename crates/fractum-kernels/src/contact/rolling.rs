@@ -17,7 +17,7 @@ use crate::exact::Exact as _;
 pub struct Rolling {
     /// μ_r R* [m]: largest distance of the normal force from the centre of the contact.
     pub arm: f64,
-    /// I = 7/5 m* R*² [kg m²]: moment of inertia of a sphere about the contact.
+    /// I = 7/5 m* R*² [kg m²]: moment of inertia of a sphere about the contact; of a disc 3/2 m* R*².
     pub inertia: f64,
 }
 
@@ -64,6 +64,12 @@ impl Rolling {
     #[inline]
     pub fn new(coefficient: f64, radius: f64, mass: f64) -> Self {
         Rolling { arm: coefficient * radius, inertia: 1.4 * mass * radius * radius }
+    }
+
+    /// The same between discs.
+    #[inline]
+    pub(super) fn of_disc(coefficient: f64, radius: f64, mass: f64) -> Self {
+        Rolling { inertia: 1.5 * mass * radius * radius, ..Rolling::new(coefficient, radius, mass) }
     }
 
     /// Squared frequency that a sphere of `radius` [m] which turns freely has for an explicit step, over k_n/m: k_r m/I (√(1 + ζ²) + ζ)² with

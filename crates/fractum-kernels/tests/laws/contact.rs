@@ -213,6 +213,51 @@ pub(crate) fn hertz_flat(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
     (Hertz::flat([normal, normal / (2.0 * (1.0 + nu))], surface, radius, mass), radius, surface)
 }
 
+/// Discs of one thickness.
+pub(crate) fn discs(draw: &mut Draw) -> (Hertz, f64, ContactParameters) {
+    let (young, nu, radii, _) = bodies(draw);
+    let surface = surface(draw);
+    let material = ElasticMaterial { young_modulus: young, poisson_ratio: nu };
+    let thickness = draw.over_decades(1e-3, 10.0);
+    let density = draw.between(500.0, 8000.0);
+    let masses = radii.map(|radius| PI * radius * radius * thickness * density);
+    let reduced = |[a, b]: [f64; 2]| a * b / (a + b);
+    let pair = MaterialPair::new([material, material], surface).of_thickness(Some(thickness));
+    (Hertz::new(&pair, reduced(radii), reduced(masses)), radii[0].min(radii[1]), surface)
+}
+
+/// Two discs that hit head-on part with the restitution of their damping, at any step that runs take: energies add up.
+pub(crate) fn rebound_of_discs(draw: &mut Draw) -> Held {
+    let (law, _, surface) = discs(draw);
+    let mass = law.flat.unwrap_or_default();
+    let (normal, _) = law.stiffness(0.0);
+    let steps = draw.over_decades(15.0, 500.0);
+    let dt = PI * (mass / normal).sqrt() / steps;
+    let approach = draw.over_decades(1e-4, 1e2);
+    let (mut velocity, mut overlap) = (-approach, -draw.between(0.0, 1.0) * approach * dt);
+    let (mut memory, mut taken, mut before) = (Default::default(), 0.0, ContactForce::default());
+    let x = fractum_kernels::Vec3::x();
+    let start = 0.5 * mass * approach * approach;
+    for _ in 0..(3.0 * steps) as usize {
+        let motion = PairMotion { overlap, velocity: x * velocity, dt, ..resting(x, overlap) };
+        let force = law.force(&motion, &mut memory);
+        taken += force.damping + force.friction;
+        let after = velocity + force.on_second.x / mass * dt;
+        let kinetic = 0.5 * mass * velocity * after;
+        hold((kinetic + force.stored + taken - start).abs() < 1e-9 * start, || {
+            format!("{kinetic} J move, {} are stored and {taken} taken of {start}", force.stored)
+        })?;
+        velocity = after;
+        overlap -= velocity * dt;
+        before = force;
+    }
+    hold(before.on_second.x == 0.0, || "still in contact".to_owned())?;
+    let expected = restitution_of_damping(surface.damping_ratio);
+    let found = velocity / approach;
+    let most = 0.012 * (15.0 / steps).powi(2) + 1e-4;
+    hold((found - expected).abs() < most, || format!("{found} for {expected} in {steps} steps"))
+}
+
 /// Restitution falls from one as damping grows, stays above zero, and its inverse gives it back.
 pub(crate) fn restitution(draw: &mut Draw) -> Held {
     let ratio = draw.over_decades(1e-6, 4.0);

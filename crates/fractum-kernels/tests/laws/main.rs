@@ -81,6 +81,14 @@ const LAWS: &[Row] = &[
             contact::contact(draw, law, true)
         },
     },
+    Row {
+        law: "contact, discs",
+        holds: |draw| {
+            let law = contact::discs(draw);
+            contact::contact(draw, law, true)
+        },
+    },
+    Row { law: "contact, discs, restitution", holds: contact::rebound_of_discs },
     Row { law: "contact, adhesion", holds: contact::adhesion },
     Row { law: "restitution", holds: contact::restitution },
     Row { law: "edge, exponential", holds: |draw| damage::way(draw, Softening::Exponential, false) },

@@ -122,6 +122,8 @@ fn particles_file(
         Field::vector("spin", &spin),
         Field::integer("body", &body),
     ];
+    let thickness = all.thickness.map(|thickness| vec![thickness; radius.len()]);
+    point_data.extend(thickness.as_ref().map(|thickness| Field::scalar("thickness", thickness)));
     let clumps = bonded.clumps().of_particles(all.len());
     let clump: Vec<i32> = if clumps.is_empty() { Vec::new() } else { shown().map(|i| clumps[i] as i32).collect() };
     if !clump.is_empty() {

@@ -33,7 +33,7 @@ impl Bonded {
         touching.iter().for_each(|&i| stays[piece[i as usize] as usize] = true);
         for i in 0..all.len() {
             // Clumps hold their spheres, and nothing holds clumps; what is out has left.
-            let held = all.held[i] != 0 && (all.is_out(i) || clump_of.get(i).is_none_or(|clump| *clump == NO_CLUMP));
+            let held = all.is_held(i) && (all.is_out(i) || clump_of.get(i).is_none_or(|clump| *clump == NO_CLUMP));
             let bound = held || !domain.is_ball_outside(&all.position[i], all.radius[i]);
             stays[piece[i] as usize] |= bound;
         }

@@ -190,6 +190,7 @@ impl Bonded {
             own.inertia.append(&mut particles.inertia);
             own.radius.append(&mut particles.radius);
             own.held.append(&mut particles.held);
+            own.thickness = particles.thickness.or(own.thickness);
             let pairs: Vec<[u32; 2]> = pairs.iter().map(|pair| pair.map(|i| i + start as u32)).collect();
             plans.push((name, range, (pairs, shares, law), [density, fraction], fracture));
         }

@@ -105,7 +105,10 @@ impl DebrisAmong {
             let masses = [particles.mass[particle], solid.mass[node as usize]];
             let (e, nu) = debris.mean_elasticity(node, &material.elastic);
             let surface = debris.surface_with(node, ContactBody::Particles(body), material.surface);
-            Some(Linear::between_spheres(e, nu, radii, masses, surface))
+            Some(match particles.thickness {
+                Some(thickness) => Linear::between_discs(e, nu, radii, thickness, masses, surface),
+                None => Linear::between_spheres(e, nu, radii, masses, surface),
+            })
         };
         contacts.renew(&Spheres { position, velocity, spin, radius }, law);
     }

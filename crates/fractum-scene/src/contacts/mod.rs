@@ -160,8 +160,9 @@ impl Contacts {
         for (index, part) in (0..).zip(bonded.bodies()) {
             body[part.range.clone()].fill(index);
         }
+        let thickness = bonded.particles.thickness;
         let pair = |a: &ContactMaterial, b: &ContactMaterial| {
-            let pair = MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface));
+            let pair = MaterialPair::new([a.elastic, b.elastic], a.surface.against(b.surface)).of_thickness(thickness);
             pair.sticking(adhesion(a.work_of_adhesion, b.work_of_adhesion))
         };
         // Particles that are to come in have negative radii.
@@ -171,7 +172,7 @@ impl Contacts {
         let on_tool = |rigid_body: &RigidBody| {
             let with = |m: &ContactMaterial| {
                 let pair = MaterialPair::new([m.elastic, rigid_body.elastic], m.surface.against(rigid_body.surface));
-                pair.sticking(adhesion(m.work_of_adhesion, rigid_body.work_of_adhesion))
+                pair.of_thickness(thickness).sticking(adhesion(m.work_of_adhesion, rigid_body.work_of_adhesion))
             };
             (SurfaceContacts::new(skin), materials.iter().map(with).collect())
         };
@@ -201,7 +202,7 @@ impl Contacts {
             pairs: materials.iter().flat_map(|a| materials.iter().map(move |b| pair(a, b))).collect(),
             on_tools: rigid_bodies.iter().map(on_tool).collect(),
             among: (!alone && !body.is_empty()).then(|| SphereContacts::new(skin)),
-            solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials)).collect(),
+            solids: solids.into_iter().map(|solid| solid.prepared(skin, &materials, thickness)).collect(),
             nodes: NodeContacts::none(rigid_bodies.len()),
             gravity: gravity.into_iter().map(|(axis, value)| (axis, TimeFunctionOf(value))).collect(),
             bonded: is_bonded,
@@ -368,7 +369,7 @@ impl Contacts {
                 let pair = &pairs[body[i] as usize];
                 match flat.of(body[i]) {
                     Some(faces) => faces.law(radius[i], pair.surface, moved),
-                    None => Hertz::new(pair, 1.0 / (1.0 / radius[i] + curvature), moved),
+                    None => Hertz::new(pair, pair.radius_on(radius[i], curvature), moved),
                 }
             };
             let ground = rigid_body.ground();

@@ -70,7 +70,7 @@ impl NodeContacts {
 }
 
 impl Contacts {
-    /// Has the nodes of solids meet what there is; plane ones meet nothing of it.
+    /// Has the nodes of solids meet what there is; of plane ones the discrete elements meet discs, and nothing else does.
     ///
     /// - `surface`: nodes on the surfaces of the solids, ascending
     /// - `joined`: bodies that interfaces join
@@ -82,12 +82,15 @@ impl Contacts {
         surface: &[u32],
         joined: &[[u32; 2]],
     ) {
-        if solid.body_count() == 0 || solid.is_plane() {
+        if solid.body_count() == 0 || solid.is_plane() && particles.thickness.is_none() {
             return;
         }
         if !particles.is_empty() {
             let smallest = particles.radius.iter().map(|radius| radius.abs()).fold(f64::INFINITY, f64::min);
             self.nodes.debris = Some(DebrisAmong::new(SKIN * smallest));
+        }
+        if solid.is_plane() {
+            return;
         }
         let piece = pieces(solid, joined);
         let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };

@@ -42,7 +42,7 @@ pub struct SolidSurface {
 impl SolidSurface {
     /// The ground of the facets of one body.
     ///
-    /// - `facets`: nodes of the solid, counter-clockwise from outside
+    /// - `facets`: nodes of the solid, counter-clockwise from outside; edges of plane bodies repeat their second node
     ///
     /// # Errors
     /// Facets that are no surface.
@@ -56,7 +56,8 @@ impl SolidSurface {
         nodes.sort_unstable();
         nodes.dedup();
         let place = |node: &u32| nodes.binary_search(node).map_or(u32::MAX, |place| place as u32);
-        let local: Vec<[u32; 3]> = facets.iter().map(|f| [place(&f[0]), place(&f[1]), place(&f[2])]).collect();
+        let local = |facet: &[u32; 3]| facet[..corners(facet)].iter().map(place).collect();
+        let local: Vec<Vec<u32>> = facets.iter().map(local).collect();
         let points: Vec<Vec3> = nodes.iter().map(|&n| solid.position(n as usize)).collect();
         let elastic = &solid.body(body).elastic;
         Ok(SolidSurface {
@@ -94,8 +95,10 @@ impl SolidSurface {
         self.visitors = Some(NodesOnSurface::new(surface, bodies, debris));
     }
 
-    pub(super) fn prepared(mut self, skin: f64, materials: &[ContactMaterial]) -> Self {
-        let pair = |m: &ContactMaterial| MaterialPair::new([m.elastic, self.elastic], m.surface.against(self.surface));
+    pub(super) fn prepared(mut self, skin: f64, materials: &[ContactMaterial], thickness: Option<f64>) -> Self {
+        let pair = |m: &ContactMaterial| {
+            MaterialPair::new([m.elastic, self.elastic], m.surface.against(self.surface)).of_thickness(thickness)
+        };
         self.pairs = materials.iter().map(pair).collect();
         self.contacts = SurfaceContacts::new(skin);
         self
@@ -205,7 +208,8 @@ impl SolidSurface {
         let mut some = false;
         for &(_, element) in removed.iter().filter(|(body, _)| *body == self.body) {
             let [a, b, c, d] = solid.body(self.body).elements[element as usize];
-            for facet in [[a, b, c], [a, b, d], [a, c, d], [b, c, d]] {
+            // Triangles repeat their last node.
+            for facet in [[a, b, c], if c == d { [a, b, b] } else { [a, b, d] }, [a, c, d], [b, c, d]] {
                 if let Ok(place) = self.by_nodes.binary_search_by_key(&sorted(facet), |(nodes, _)| *nodes) {
                     self.mesh.remove(self.by_nodes[place].1);
                     some = true;
@@ -340,7 +344,15 @@ impl SolidSurface {
 /// Contacts of particles, and of nodes of other solids.
 pub(super) type SolidSurfaceState = (Vec<Touch<HertzMemory>>, Vec<Touch<ContactMemory>>);
 
+/// Corners of a facet: those of an edge repeat the second.
+fn corners(facet: &[u32; 3]) -> usize {
+    if facet[1] == facet[2] { 2 } else { 3 }
+}
+
+/// The nodes of a facet ascending, of an edge with the last one twice.
 fn sorted(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
+    let count = corners(&nodes);
+    nodes[..count].sort_unstable();
+    nodes[2] = nodes[2].max(nodes[1]);
     nodes
 }

@@ -117,6 +117,11 @@ fn grains(body: &LooseBody, density: f64) -> f64 {
             (size, PI * radius * radius * length / size.product())
         }
         Region::Sphere { radius, .. } => (fractum_math::Vec3::repeat(2.0 * radius), PI / 6.0),
+        // One layer of cells.
+        Region::Rectangle { size, .. } => (size + fractum_math::Vec3::z() * (4.0 * radius), 1.0),
+        Region::Circle { radius: wide, .. } => {
+            (fractum_math::Vec3::new(2.0 * wide, 2.0 * wide, 4.0 * radius), PI / 4.0)
+        }
     };
     let room = cloud_cells(&size, *radius, *dispersion).product() * share;
     count.as_ref().map_or(room, |count| count.value as f64)

@@ -66,9 +66,17 @@ impl Plan {
                         let mass = &scene.bonded.clumps().masses(all)[part.range.clone()];
                         let of =
                             |best: fn(f64, f64) -> f64| quantity(radius.iter().copied().fold(radius[0], best), "m");
-                        let what = match &loose.clump {
-                            None => format!("{} loose particles", radius.len()),
-                            Some(clump) => {
+                        let what = match (&loose.clump, &loose.thickness) {
+                            (None, None) => format!("{} loose particles", radius.len()),
+                            (None, Some(thickness)) => {
+                                let discs = if radius.len() == 1 { "disc" } else { "discs" };
+                                format!(
+                                    "{} plane {discs} of thickness {}",
+                                    radius.len(),
+                                    quantity(thickness.value, "m")
+                                )
+                            }
+                            (Some(clump), _) => {
                                 let each = clump.value.shape.spheres().len();
                                 let spheres = if each == 1 { "sphere" } else { "spheres" };
                                 let clumps = if radius.len() == each { "clump" } else { "clumps" };
@@ -93,7 +101,8 @@ impl Plan {
                             LooseSource::Inlet { stream, .. } => matches!(stream.sizes, Sizes::Graded(_)),
                             _ => false,
                         };
-                        self.add("body", if graded { text + &passing(&radius) } else { text });
+                        let power = if loose.thickness.is_some() { 2 } else { 3 };
+                        self.add("body", if graded { text + &passing(&radius, power) } else { text });
                         if let LooseSource::Inlet { stream, .. } = &loose.source {
                             self.add("", stream_in_words(stream));
                         }
@@ -433,14 +442,16 @@ fn stream_in_words(stream: &Stream) -> String {
 }
 
 /// Diameters below which shares of the mass of spheres lie.
-fn passing(radius: &[f64]) -> String {
+///
+/// - `power`: of the radius that the mass grows with
+fn passing(radius: &[f64], power: i32) -> String {
     let mut sorted = radius.to_vec();
     sorted.sort_by(f64::total_cmp);
-    let all: f64 = sorted.iter().map(|r| r.powi(3)).sum();
+    let all: f64 = sorted.iter().map(|r| r.powi(power)).sum();
     let below = |share: f64| {
         let mut mass = 0.0;
         let found = sorted.iter().find(|r| {
-            mass += r.powi(3);
+            mass += r.powi(power);
             mass >= share * all
         });
         quantity(2.0 * found.copied().unwrap_or_default(), "m")
