@@ -83,6 +83,8 @@ codes! {
     Reaction = "reaction",
     /// A Poisson's ratio at which elements lock.
     Locking = "locking",
+    /// A criterion by which a plate in plane strain has another strength.
+    PlaneStrain = "plane-strain",
     /// A pressure that pulls.
     Suction = "suction",
     /// Coordinates too far from the origin for small displacements.
@@ -173,6 +175,10 @@ codes! {
     MergedBands = "merged-bands",
     /// Bands of a phase field that end at nodes shared with another body.
     CutBand = "cut-band",
+    /// Cracks that cost more or less than their fracture energy.
+    CrackEnergy = "crack-energy",
+    /// Cracks that show one of their faces.
+    CrackArea = "crack-area",
     /// Elements too large for the strength at their rate of strain.
     RateLimited = "rate-limited",
     /// An accuracy that was asked for and not reached.

@@ -385,3 +385,35 @@ crack = { measure = "front", along = "x" }
         all.iter().filter(|[code, ..]| code == "undefined").map(|[_, place, _]| place.as_str()).collect();
     assert_eq!(told, ["probe \"none\"", "probe \"endless\"", "probe \"crack\""], "{all:?}");
 }
+
+/// Bars of one mesh: two cracks share a part that is weak over 30 mm (1.8 times the fracture energy), one runs where it is weak over 6 mm (1.0), plain elements take
+/// 0.75 of it there, and a bar that is equally strong parts along its clamp.
+#[test]
+fn cracks_that_do_not_cost_their_fracture_energy_are_told() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+    let bar = fs::read_to_string(format!("{folder}/cases/tension-bar-plane/aligned-coarse.toml")).unwrap();
+    let bar =
+        bar.replace("../../meshes/tension-bar-plane/aligned-coarse.msh", "bar.msh").replace("phase-field\"", "none\"");
+    let kind = "kind = \"solid\"";
+    let plain = format!("{kind}\nformulation = \"standard\"");
+    let (wide, narrow) = ("if(abs(x) < 15 mm, 0.9, 1)", "if(abs(x) < 3 mm, 0.9, 1)");
+    for (weak, formulation, told) in [
+        (wide, kind, Some(("crack-energy", "1.8", "beside cracks"))),
+        (narrow, kind, None),
+        (narrow, &plain, Some(("crack-energy", "75", "of the fracture energy"))),
+        ("1", kind, Some(("crack-area", "1.7 times", "shows one face"))),
+    ] {
+        assert!(bar.contains(wide) && bar.contains(kind));
+        let place = Workplace::new(&bar.replace(wide, weak).replace(kind, formulation));
+        fs::copy(format!("{folder}/meshes/tension-bar-plane/aligned-coarse.msh"), place.path("bar.msh")).unwrap();
+        run(&place, "out", "1");
+        let all = listed(&place, "out");
+        match told {
+            None => assert_eq!(all, [[""; 3]; 0]),
+            Some((code, first, second)) => {
+                let [[found, _, text]] = all.as_slice() else { panic!("{all:?}") };
+                assert!(found == code && text.contains(first) && text.contains(second), "{all:?}");
+            }
+        }
+    }
+}

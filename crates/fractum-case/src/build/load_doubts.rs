@@ -5,7 +5,7 @@ use fractum_mesh::Mesh;
 use fractum_output::number::{percent, quantity, significant};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, passage, wave_speed};
+use super::body_doubts::{Own, extent, passage, wave_speed};
 use crate::measure::Reaction;
 use crate::model::{BodyKind, Case, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind, Support};
 use crate::{Diagnostic, Place, Spanned, TimeFunction};
@@ -149,11 +149,15 @@ fn hurried(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
                 format!("moves during {} passages of a wave ({} each)", significant(lasts, 2), quantity(passage, "s"));
             return Some(Diagnostic::warning(Code::FastLoading, &motion.place, found).remedy(remedy));
         }
+        // As if the specimen were pulled evenly; where cracks begin it is faster.
+        let (low, high) = extent(mesh, bodies);
+        let rate = speed / (high - low).norm();
         let share = |body: &Own| {
             let material = &case.materials[body.solid.material];
             let damage = material.damage.as_ref().filter(|_| body.solid.damage)?;
             let stress = speed * material.density * wave_speed(case, body);
-            Some(stress / damage.value.law.tensile_strength)
+            let by_rate = damage.value.rate.as_ref().map_or(1.0, |curves| curves.value.strength_at(rate));
+            Some(stress / (by_rate * damage.value.law.tensile_strength))
         };
         let share = bodies.iter().filter_map(share).fold(0.0, f64::max);
         if share > FAST {

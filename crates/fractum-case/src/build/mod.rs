@@ -50,6 +50,7 @@ pub use division::{Replication, SolidDivision, cannot_divide, divide, replicated
 pub use doubts::doubts;
 pub use interfaces::{cut_mesh, process_zone};
 pub use network::cut_network;
+pub use notches::is_notched;
 pub use ppv::PpvStations;
 pub use refine::{refine_bytes, refine_mesh, remedy as refine_remedy, told as refine_told};
 pub use statics::may_rest;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use fractum_fem::Plane;
-use fractum_math::Vec3;
+use fractum_math::{Sym3, Vec3};
 use fractum_mesh::bodies::SolidElements;
 use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
@@ -16,10 +16,12 @@ use super::load_doubts::{doubts_of_loads, odd_reactions};
 use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
 use super::{contact_pairs, inlets, periodic};
 use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
-use crate::{Diagnostic, Spanned, TimeFunction};
+use crate::{Choice, Diagnostic, Spanned, TimeFunction};
 
 /// Poisson's ratio above which linear elements are too stiff.
 const LOCKING: f64 = 0.45;
+/// Part of its strength in tension by which that in plane strain may differ.
+const COUNTS: f64 = 0.03;
 /// Stress of the wave of a jump over the strength, above which the jump shows in what breaks.
 const JUMP: f64 = 0.1;
 /// Opening of an edge within a passage of a wave over that at which it has no strength, above which it takes clearly less than its energy
@@ -74,6 +76,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(bodies.iter().filter_map(|body| torn_at_once(case, mesh, body)));
     doubts.extend(unequal_plates(mesh, &bodies));
     doubts.extend(bodies.iter().filter_map(|body| locking(case, body)));
+    doubts.extend(bodies.iter().filter_map(|body| counts_across(case, body)));
     doubts.extend(bodies.iter().filter_map(|body| thickness(case, mesh, body)));
     doubts.extend(odd_reactions(case, mesh, &bodies));
     doubts.extend(unmoved(case));
@@ -227,6 +230,31 @@ fn locking(case: &Case, body: &Own) -> Option<Diagnostic> {
     let found = format!("has a Poisson's ratio of {}", material.poisson_ratio);
     let note = Diagnostic::warning(Code::Locking, &material.name.place, found).expected(format!("at most {LOCKING}"));
     Some(note.remedy("elements of constant strain lock: displacements are too small; take 0.45, or many more elements"))
+}
+
+/// A criterion by which the stress across a plate of plane strain counts, so that it does not bear its tensile strength.
+fn counts_across(case: &Case, body: &Own) -> Option<Diagnostic> {
+    let material = &case.materials[body.solid.material];
+    let damage = material.damage.as_ref().filter(|_| body.solid.damage && body.plane)?;
+    if body.solid.plane.as_ref().is_some_and(|plane| plane.value != Plane::Strain) {
+        return None;
+    }
+    let law = &damage.value.law;
+    // A pull with what keeps the plate as thick as it is.
+    let pull = Sym3([1.0, 0.0, material.poisson_ratio, 0.0, 0.0, 0.0]);
+    let strength = 1.0 / law.criterion.equivalent_stress(pull);
+    if (strength - 1.0).abs() <= COUNTS {
+        return None;
+    }
+    let found = format!(
+        "= \"{}\" in plane strain: a pull breaks it at {strength:.2} of tensile_strength, and cracks cost {:.2} of fracture_energy",
+        law.criterion.kind().name(),
+        strength * strength
+    );
+    let note = Diagnostic::warning(Code::PlaneStrain, &damage.place, found);
+    Some(
+        note.remedy("take mohr-coulomb, which knows compression too and has its strength there, or plane = \"stress\""),
+    )
 }
 
 /// Pressures that pull, on anything but a plane face: there a negative pressure is a way to write a tension.

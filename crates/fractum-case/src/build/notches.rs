@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use fractum_fem::{Body, ElementKind, Region, Solid};
 use fractum_math::Vec3;
 use fractum_math::elementary::atan2;
+use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
 
 /// Angle within the solids from which on an edge of their surface is a notch [rad]: 225 degrees, which round holes of ten facets do not reach.
 const RE_ENTRANT: f64 = 1.25 * PI;
@@ -70,6 +71,18 @@ impl<'a> Notches<'a> {
     }
 }
 
+/// Whether solids have a notch where damage may occur.
+pub fn is_notched(solid: &Solid) -> bool {
+    let bodies = || (0..solid.body_count()).map(|index| solid.body(index));
+    let of = |shape| bodies().filter(move |body| body.shape == shape).flat_map(|body| body.elements.iter());
+    let triangles: Vec<[u32; 3]> = of(ElementKind::T3).map(|&[a, b, c, _]| [a, b, c]).collect();
+    let tetrahedra: Vec<[u32; 4]> = of(ElementKind::T4).copied().collect();
+    let mut boundary: Vec<[u32; 3]> = boundary_of_tetrahedra(&tetrahedra).iter().map(|facet| facet.nodes).collect();
+    boundary.extend(boundary_of_triangles(&triangles).iter().map(|side| [side.nodes[0], side.nodes[1], side.nodes[1]]));
+    let notches = Notches::of(solid, &boundary);
+    bodies().any(|body| body.damage.is_some() && notches.has(body))
+}
+
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
@@ -92,7 +105,6 @@ mod tests {
 
     use fractum_fem::{DamageLaw, Elastic};
     use fractum_mesh::generate::{Jitter, mirrored_cells, structured_rectangle};
-    use fractum_mesh::topology::{boundary_of_tetrahedra, boundary_of_triangles};
 
     use super::*;
 

@@ -276,6 +276,51 @@ fn a_velocity_that_tears_elements_at_once_is_told() {
     }
 }
 
+/// As docs/limits.md tells it of bars in plane strain.
+#[test]
+fn a_criterion_that_counts_the_stress_across_a_plate_is_told_in_plane_strain() {
+    let mesh = structured_rectangle([8, 3], [0.4, 0.12], None);
+    let said = |criterion: &str, ratio: &str, plane: &str| {
+        let crushing = if criterion == "mazars" { "" } else { "compressive_strength = \"30 MPa\"" };
+        let case = BAR
+            .replace("\"100 J/m^2\"", &format!("\"100 J/m^2\"\ncriterion = \"{criterion}\"\n{crushing}"))
+            .replace("poisson_ratio = 0.2", &format!("poisson_ratio = {ratio}"))
+            .replace("kind = \"solid\"", &format!("kind = \"solid\"\n{plane}"))
+            .replace("fix = \"yz\"", "fix = \"xy\"");
+        let told = said_of(&case, &mesh);
+        told.into_iter().find(|text| text.contains("[plane-strain]"))
+    };
+    for (criterion, ratio, words) in [
+        ("mazars", "0.3", "at 1.10 of tensile_strength, and cracks cost 1.21 of"),
+        ("mazars", "0.45", "at 1.25 of"),
+        ("drucker-prager", "0.3", "at 0.93 of"),
+        ("drucker-prager", "0.45", "at 0.89 of"),
+    ] {
+        let told = said(criterion, ratio, "");
+        assert!(told.as_ref().is_some_and(|text| text.contains(words)), "{criterion} {ratio}: {told:?}");
+    }
+    assert_eq!(said("drucker-prager", "0.3", "plane = \"stress\""), None);
+    assert_eq!(said("mazars", "0", ""), None);
+    assert_eq!(said("mohr-coulomb", "0.45", ""), None);
+}
+
+/// Its wave has 0.6 of the strength at rest, and 0.47 of that at half a per second.
+#[test]
+fn a_strength_that_grows_with_the_rate_of_strain_allows_faster_loading() {
+    let measured =
+        "[[probes]]\nname = \"load\"\nreaction = { group = \"x+\", along = \"x\" }\n[solver]\nend = \"2 ms\"";
+    let fast =
+        BAR.replace("[solver]\nend = \"1 ms\"", measured).replace("0.1 mm", "0.2 mm").replace("\"yz\"", "\"xyz\"");
+    let mesh = structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None);
+    let told = said_of(&fast, &mesh);
+    assert!(
+        told.len() == 1 && told[0].contains("of the tensile strength") && told[0].ends_with("[fast-loading]"),
+        "{told:?}"
+    );
+    let by_rate = "\"100 J/m^2\"\nrate = { strength = \"fib-2010\" }";
+    assert_eq!(said_of(&fast.replace("\"100 J/m^2\"", by_rate), &mesh), [""; 0]);
+}
+
 #[test]
 fn a_restitution_that_holds_for_nodes_alone_is_told() {
     let case = |restitution: &str, free: &str, damage: &str| {

@@ -1,6 +1,6 @@
 //! Strength and fracture energy of a material by the rate of strain.
 
-use fractum_kernels::damage::RateLaw;
+use fractum_kernels::damage::{RateLaw, rate_factor};
 
 /// How a material grows stronger with the rate of strain: rates [1/s], ascending, and the factors there.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,6 +24,11 @@ impl RateCurves {
             energy: &self.energy,
             watched,
         }
+    }
+
+    /// Factor on the tensile strength at a rate of strain [1/s].
+    pub fn strength_at(&self, rate: f64) -> f64 {
+        rate_factor(&self.strength, rate)
     }
 
     /// Part of the strength at rest from which on the rate is measured.

@@ -151,7 +151,7 @@ fn crack_edge(solid: &Solid, body: usize, field: &EdgeField, at: usize) -> Crack
 }
 
 /// Share of an edge in the volume of the elements around it, whether they are still there or not [m³].
-fn volume_of_edge(solid: &Solid, body: usize, edge: u32) -> f64 {
+pub(crate) fn volume_of_edge(solid: &Solid, body: usize, edge: u32) -> f64 {
     let model = &solid.bodies[body];
     let Some(edges) = &model.edges else { return 0.0 };
     let elements = edges.around(edge);

@@ -66,6 +66,16 @@ impl Separation {
 }
 
 fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet> {
+    let facet = |(facet, (area, _)): (&CrackFacet, (f64, Vec3))| SeparatedFacet {
+        body: facet.removed.0,
+        removed: facet.removed.1,
+        area: 0.5 * area,
+    };
+    surface.facets.iter().zip(projected_facets(solid, surface)).map(facet).collect()
+}
+
+/// Area of each facet without load on the mean plane of those around it [m²], and the normal of that plane, into the crack.
+pub(crate) fn projected_facets(solid: &Solid, surface: &CrackSurface) -> Vec<(f64, Vec3)> {
     let vectors: Vec<Vec3> = surface.facets.iter().map(|facet| area_without_load(solid, facet)).collect();
     let same_face = |a: &Vec3, b: &Vec3| a.dot(b) > OTHER_FACE * (a.norm_squared() * b.norm_squared()).sqrt();
     let mut mean = vectors.clone();
@@ -78,16 +88,10 @@ fn separated_facets(solid: &Solid, surface: &CrackSurface) -> Vec<SeparatedFacet
         mean = (0..mean.len()).map(around).collect();
     }
     let projected = |(area, mean): (&Vec3, &Vec3)| match mean.try_normalize(0.0) {
-        Some(normal) => area.dot(&normal).max(0.0),
-        None => area.norm(),
+        Some(normal) => (area.dot(&normal).max(0.0), normal),
+        None => (area.norm(), *mean),
     };
-    let areas = vectors.iter().zip(&mean).map(projected);
-    let facet = |(facet, area): (&CrackFacet, f64)| SeparatedFacet {
-        body: facet.removed.0,
-        removed: facet.removed.1,
-        area: 0.5 * area,
-    };
-    surface.facets.iter().zip(areas).map(facet).collect()
+    vectors.iter().zip(&mean).map(projected).collect()
 }
 
 /// Area of a facet times its normal without load; of a side in the plane its length times the depth [m²].

@@ -208,6 +208,11 @@ impl Softens {
         self.softening.residual_ratio(kappa, strength, length, self.restraint.modulus, self.fracture_energy)
     }
 
+    /// Part of its fracture energy that an edge has spent, 0 to 1.
+    pub fn spent_ratio(&self, kappa: f64, strength: f64, length: f64) -> f64 {
+        self.softening.spent_ratio(kappa, strength, length, self.restraint.modulus, self.fracture_energy)
+    }
+
     /// Characteristic length of an edge over the one at which its softening snaps back.
     pub fn length_ratio(&self, strength: f64, length: f64) -> f64 {
         length / self.softening.largest_length(self.restraint.modulus, strength, self.fracture_energy)

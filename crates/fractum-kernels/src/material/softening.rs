@@ -49,6 +49,26 @@ impl Softening {
         }
     }
 
+    /// Part of the fracture energy that is spent at the largest equivalent stress `kappa` ≥ f_t so far, 0 to 1; arguments as of [`Softening::residual_ratio`].
+    ///
+    /// Damage of a stress κ per volume takes ½ κ²/E dd with d = 1 − χ f_t/κ: over f_t²/E this is ∫ χ dx + ½ (1 − x χ) with x = κ/f_t from 1 on.
+    pub fn spent_ratio(&self, kappa: f64, strength: f64, length: f64, young_modulus: f64, fracture_energy: f64) -> f64 {
+        let ratio = kappa / strength;
+        let brittleness = young_modulus * fracture_energy / (length * strength * strength);
+        let left = self.residual_ratio(kappa, strength, length, young_modulus, fracture_energy);
+        let below = match *self {
+            Softening::Exponential => (brittleness - 0.5) * (1.0 - left),
+            Softening::Linear => 0.5 * (1.0 + left) * (ratio.min(2.0 * brittleness) - 1.0),
+            Softening::Bilinear { stress, opening } => {
+                let kink = opening * brittleness + stress;
+                let end = Self::bilinear_end(stress, opening) * brittleness;
+                0.5 * (1.0 + left.max(stress)) * (ratio.min(kink) - 1.0)
+                    + 0.5 * (stress + left.min(stress)) * (ratio.clamp(kink, end) - kink)
+            }
+        };
+        (below + 0.5 * (1.0 - ratio * left)) / brittleness
+    }
+
     /// Characteristic length above which the curve would snap back [m].
     #[inline]
     pub fn largest_length(&self, young_modulus: f64, strength: f64, fracture_energy: f64) -> f64 {
@@ -66,5 +86,33 @@ impl Softening {
     #[inline]
     fn bilinear_end(stress: f64, opening: f64) -> f64 {
         (2.0 - opening) / stress
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_spent_is_what_damage_takes() {
+        const STEPS: u32 = 200_000;
+        let (strength, length, modulus, energy) = (3e6, 0.01, 30e9, 100.0);
+        for softening in [Softening::Exponential, Softening::Linear, Softening::PETERSSON] {
+            let damage = |kappa: f64| {
+                1.0 - softening.residual_ratio(kappa, strength, length, modulus, energy) * strength / kappa
+            };
+            let (mut taken, mut before) = (0.0, 0.0);
+            for step in 1..=STEPS {
+                let kappa = strength * (1.0 + 199.0 * f64::from(step) / f64::from(STEPS));
+                let now = damage(kappa);
+                taken += 0.5 * kappa * kappa / modulus * (now - before) * length / energy;
+                before = now;
+                if step % 20_000 == 0 {
+                    let spent = softening.spent_ratio(kappa, strength, length, modulus, energy);
+                    assert!((spent - taken).abs() < 2e-3, "{softening:?} {kappa}: {spent} for {taken}");
+                }
+            }
+            assert!((taken - 1.0).abs() < 0.01, "{softening:?}: {taken}");
+        }
     }
 }

@@ -5,12 +5,13 @@ use std::f64::consts::PI;
 use fractum_case::Case;
 use fractum_case::model::{BodyKind, Probe, ProbeInput, ProbeKind};
 use fractum_fem::{RateReport, cracks, motion, neighbours, rate_report};
-use fractum_math::Vec3;
 use fractum_output::number::{at_instant, percent, quantity};
 use fractum_output::summary::LargestOverlap;
 use fractum_output::warning::{Code, Warning};
 use fractum_scene::{Notice, Noticed, Scene, Site};
 
+use super::crack_energy::crack_energy;
+use super::messages::at;
 use super::{End, Simulation};
 use crate::error::Failure;
 use crate::output::record::Recorder;
@@ -106,6 +107,7 @@ impl Simulation {
         self.warn_of_short_lengths()?;
         self.warn_of_merged_bands()?;
         self.warn_of_cut_bands()?;
+        crack_energy(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
         coarse_crack(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
@@ -558,7 +560,6 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
 
 /// A place of the scene in words; nothing of the scene as a whole.
 fn place(scene: &Scene, site: Site) -> String {
-    let at = |x: Vec3| format!("({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z);
     let name = |particle: u32| {
         let body = scene.bonded.bodies().iter().find(|body| body.range.contains(&(particle as usize)));
         body.map_or_else(String::new, |body| {

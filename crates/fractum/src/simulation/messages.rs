@@ -2,6 +2,7 @@
 
 use std::io::Stderr;
 
+use fractum_math::Vec3;
 use fractum_output::log::{Progress, RunLog};
 use fractum_output::warning::Warning;
 
@@ -71,4 +72,9 @@ impl Messages {
     pub(super) fn tell_event(&mut self) -> Result<(), Failure> {
         self.event.take().map_or(Ok(()), |event| self.tell(&event))
     }
+}
+
+/// A place in words.
+pub(super) fn at(x: Vec3) -> String {
+    format!("({:.4e}, {:.4e}, {:.4e}) m", x.x, x.y, x.z)
 }
