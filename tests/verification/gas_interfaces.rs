@@ -88,7 +88,7 @@ impl Jointed {
         };
         let facets: Vec<[u32; 3]> = surface(&solid).into_iter().collect();
         let facets: Vec<[u32; 3]> =
-            facets.into_iter().filter(|f| f.iter().all(|n| on_wall(n)) && !is_joint(f) && !is_end(f)).collect();
+            facets.into_iter().filter(|f| f.iter().all(on_wall) && !is_joint(f) && !is_end(f)).collect();
         let pairs = interfaces.faces().iter().flat_map(|face| [0, 1, 2].map(|k| face.sides.map(|side| side[k])));
         let root = fractum_math::connected(solid.reference.len(), pairs);
         let joined: Vec<[u32; 3]> = facets.iter().map(|facet| facet.map(|node| root[node as usize])).collect();

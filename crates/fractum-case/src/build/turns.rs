@@ -23,7 +23,7 @@ enum Drive<'a> {
     Rate(&'a TimeFunction),
 }
 
-/// Instants within the run at which a load, motion or flow turns or has a kink, ascending [s]; its begin too where liquid is pumped in, whose pressure is highest there.
+/// Instants within the run at which a load, motion or flow turns or has a kink, ascending [s]; its begin too where liquid comes into interfaces, whose pressure is highest there.
 pub(super) fn turns(context: &Context<'_>) -> Vec<f64> {
     let [begin, end] = times(context);
     let positions = positions(context);
@@ -46,7 +46,7 @@ pub(super) fn turns(context: &Context<'_>) -> Vec<f64> {
     }
     let same = 1e-9 * (end - begin);
     found.retain(|time| *time > begin + same && *time < end - same);
-    found.extend(flows.liquid.iter().map(|_| begin));
+    found.extend(flows.liquid.iter().filter(|_| !context.case.interfaces.is_empty()).map(|_| begin));
     found.sort_by(f64::total_cmp);
     found.dedup_by(|next, before| *next - *before <= same);
     found

@@ -24,7 +24,7 @@ fn overrides_set_parameters_and_keys() {
         ("E", "1", "--set: E is not a parameter of this case; did you mean E0?"),
         ("solver.ende", "1", "--set: solver.ende is not a key; did you mean end?"),
         ("solver.end", "1 mm", "--set: solver.end = 1 mm, which is a length; expected a time such as \"0.2 ms\""),
-        ("bodies[30].damage", "false", "--set: bodies[30].damage cannot be set; the case has 25 of these"),
+        ("bodies[30].damage", "false", "--set: bodies[30].damage cannot be set; the case has 26 of these"),
         ("parameters.new", "1", "parameters here: size, E0, E1, nu"),
         ("nu", "0.6", "= \"nu\"; expected between -1 and 0.5"),
     ] {

@@ -62,7 +62,7 @@ fn each_mistake_about_a_bonded_body_has_one_clear_message() {
         (
             "size = [3, 1, 1]",
             "",
-            "6:1: bodies[0].size is missing; expected three numbers, each a length such as \"12 mm\"",
+            "6:1: bodies[0].size is missing; expected three numbers, of discs two, each a length such as \"12 mm\"",
         ),
         ("size = [3, 1, 1]", "size = [3, 0, 1]", "11:8: bodies[0].size = [3, 0, 1]; expected three lengths above 0"),
         (
