@@ -22,9 +22,9 @@ struct Corner {
 
 /// Corners of interfaces that heat passes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Contacts(Vec<Corner>);
+pub(super) struct Crossings(Vec<Corner>);
 
-impl Contacts {
+impl Crossings {
     /// - `transfer`: coefficient of each kind of interfaces [W/(m² K)]
     pub(super) fn new(
         solid: &Solid,
@@ -53,9 +53,9 @@ impl Contacts {
                 }
             }
         }
-        let mut contacts = Contacts(corners);
-        contacts.look(solid, interfaces);
-        contacts
+        let mut crossings = Crossings(corners);
+        crossings.look(solid, interfaces);
+        crossings
     }
 
     /// Nodes on both sides of each corner.

@@ -7,7 +7,7 @@ use fractum_heat::{HeatNetwork, PackedSphere, effective_conductivity};
 use fractum_math::Vec3;
 
 use super::ThermalMaterial;
-use super::across::Contacts;
+use super::across::Crossings;
 use crate::bonded::{Bonded, BondedBody};
 use crate::error::SceneError;
 use crate::interfaces::Interfaces;
@@ -43,7 +43,7 @@ pub(super) struct Pairs {
     /// What each element gives to its pairs, body by body and element by element.
     parts: Vec<(u32, f64)>,
     /// Sides of interfaces, and the pair of each corner.
-    contacts: Contacts,
+    crossings: Crossings,
     across: Vec<u32>,
     /// Conductances of the bonds, body by body, and the first pair that is a bond.
     bonds: Vec<f64>,
@@ -60,7 +60,7 @@ impl Pairs {
     pub(super) fn new(
         solid: &Solid,
         bonded: &Bonded,
-        contacts: Contacts,
+        crossings: Crossings,
         solids: &[ThermalMaterial],
         of_bonded: &[ThermalMaterial],
         packing: PackingConduction,
@@ -72,17 +72,17 @@ impl Pairs {
                 all.extend(own.map(|([i, j], g)| ([i.min(j), i.max(j)], g * material.conductivity)));
             }
         }
-        let mut pairs: Vec<[u32; 2]> = all.iter().map(|(pair, _)| *pair).chain(contacts.pairs()).collect();
+        let mut pairs: Vec<[u32; 2]> = all.iter().map(|(pair, _)| *pair).chain(crossings.pairs()).collect();
         pairs.sort_unstable();
         pairs.dedup();
         let place = |pair: &[u32; 2]| pairs.binary_search(pair).unwrap_or_default() as u32;
         let parts = all.iter().map(|(pair, g)| (place(pair), *g)).collect();
-        let across = contacts.pairs().map(|pair| place(&pair)).collect();
+        let across = crossings.pairs().map(|pair| place(&pair)).collect();
         let (first_bond, nodes) = (pairs.len(), solid.reference.len() as u32);
         let mut found = Pairs {
             conductances: Vec::new(),
             parts,
-            contacts,
+            crossings,
             across,
             bonds: Vec::new(),
             first_bond,
@@ -183,7 +183,7 @@ impl Pairs {
 
     /// Looks which sides of interfaces touch; whether any has met or parted.
     pub(super) fn look(&mut self, solid: &Solid, interfaces: &Interfaces) -> bool {
-        self.contacts.look(solid, interfaces)
+        self.crossings.look(solid, interfaces)
     }
 
     /// Finds the conductances from the elements, sides of interfaces and bonds that are left; nothing conducts through a crack.
@@ -198,7 +198,7 @@ impl Pairs {
                 }
             }
         }
-        for (pair, conductance) in self.across.iter().zip(self.contacts.conductances()) {
+        for (pair, conductance) in self.across.iter().zip(self.crossings.conductances()) {
             self.conductances[*pair as usize] += conductance;
         }
         let mut bond = 0;
