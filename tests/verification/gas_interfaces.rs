@@ -6,26 +6,12 @@ use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
     Charge, ContactParameters, EnergyKind, Gas, GasHole, GasMeasure, GasRoom, GasSettings, HoleEnds, InterfaceKind,
-    InterfaceLaw, InterfaceSoftening, Interfaces, Loads, MixedMode, Scene, Supports, SymmetryPlanes,
+    InterfaceLaw, Interfaces, Loads, Scene, Supports, SymmetryPlanes,
 };
 use fractum_tests::{CONCRETE, settings, softening, surface};
 
-use crate::slab::{Slab, fixed, graded, mirrored};
+use crate::slab::{OPEN, Slab, fixed, graded, mirrored};
 
-/// A joint that was never bonded.
-const OPEN: InterfaceLaw = InterfaceLaw {
-    tensile_strength: 0.0,
-    cohesion: 0.0,
-    opening_energy: 1.0,
-    sliding_energy: 1.0,
-    friction: 0.0,
-    residual_friction: 0.0,
-    dilation: 0.0,
-    dilation_slip: f64::INFINITY,
-    mixed_mode: MixedMode::Power(1.0),
-    softening: InterfaceSoftening::Linear,
-    roughness: None,
-};
 const BONDED: InterfaceLaw =
     InterfaceLaw { tensile_strength: 2e6, cohesion: 4e6, opening_energy: 20.0, sliding_energy: 80.0, ..OPEN };
 const HEAT_RATIO: f64 = 1.3;

@@ -6,26 +6,13 @@ use fractum_fem::{Elastic, Formulation, Solid};
 use fractum_math::Vec3;
 use fractum_scene::coupling::Debris;
 use fractum_scene::{
-    Bonded, ContactParameters, Heat, HeatCondition, HeatSettings, InterfaceKind, InterfaceLaw, InterfaceSoftening,
-    Loads, MixedMode, Motion, PackingConduction, Scene, Support, Supports, TemperatureTake, ThermalMaterial,
+    Bonded, ContactParameters, Heat, HeatCondition, HeatSettings, InterfaceKind, InterfaceLaw, Loads, Motion,
+    PackingConduction, Scene, Support, Supports, TemperatureTake, ThermalMaterial,
 };
 use fractum_tests::{CONCRETE, settings};
 
-use crate::slab::{Slab, mirrored};
+use crate::slab::{OPEN, Slab, mirrored};
 
-const OPEN: InterfaceLaw = InterfaceLaw {
-    tensile_strength: 0.0,
-    cohesion: 0.0,
-    opening_energy: 1.0,
-    sliding_energy: 1.0,
-    friction: 0.0,
-    residual_friction: 0.0,
-    dilation: 0.0,
-    dilation_slip: f64::INFINITY,
-    mixed_mode: MixedMode::Power(1.0),
-    softening: InterfaceSoftening::Linear,
-    roughness: None,
-};
 const BONDED: InterfaceLaw =
     InterfaceLaw { tensile_strength: 2e6, cohesion: 2e6, opening_energy: 50.0, sliding_energy: 50.0, ..OPEN };
 const MATERIAL: ThermalMaterial = ThermalMaterial { conductivity: 3.0, capacity: 800.0, expansion: 0.0 };

@@ -7,28 +7,12 @@ use fractum_fem::{Elastic, Formulation};
 use fractum_math::Vec3;
 use fractum_scene::statics::{StaticSettings, StaticSolver};
 use fractum_scene::{
-    CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, InterfaceSoftening,
-    Interfaces, Liquid, LiquidMeasure, LiquidSettings, Load, Loads, MixedMode, NodalForce, Scene, liquid_of,
-    with_liquid,
+    CubicLaw, EnergyKind, Injection, InjectionDrive, InjectionPlace, InterfaceKind, InterfaceLaw, Interfaces, Liquid,
+    LiquidMeasure, LiquidSettings, Load, Loads, NodalForce, Scene, liquid_of, with_liquid,
 };
 use fractum_tests::CONCRETE;
 
-use crate::slab::{Slab, at_rest, fixed, graded, mirrored};
-
-/// A joint that was never bonded.
-const OPEN: InterfaceLaw = InterfaceLaw {
-    tensile_strength: 0.0,
-    cohesion: 0.0,
-    opening_energy: 1.0,
-    sliding_energy: 1.0,
-    friction: 0.0,
-    residual_friction: 0.0,
-    dilation: 0.0,
-    dilation_slip: f64::INFINITY,
-    mixed_mode: MixedMode::Power(1.0),
-    softening: InterfaceSoftening::Linear,
-    roughness: None,
-};
+use crate::slab::{OPEN, Slab, at_rest, fixed, graded, mirrored};
 
 /// A joint along y = 0 into the middle of which liquid is pumped at a constant rate: half of a plane crack, or a quarter of a disc.
 #[derive(Clone, Copy, Debug)]

@@ -7,9 +7,25 @@ use fractum_mesh::{CutAlong, Group, Mesh};
 use fractum_scene::coupling::Debris;
 use fractum_scene::statics::{Control, LinearSolver, NoEquilibrium, StaticSettings};
 use fractum_scene::{
-    ContactParameters, InterfaceFace, InterfaceKind, Interfaces, Loads, Motion, Scene, Support, Supports,
+    ContactParameters, InterfaceFace, InterfaceKind, InterfaceLaw, InterfaceSoftening, Interfaces, Loads, MixedMode,
+    Motion, Scene, Support, Supports,
 };
 use fractum_tests::settings;
+
+/// A joint that was never bonded.
+pub(crate) const OPEN: InterfaceLaw = InterfaceLaw {
+    tensile_strength: 0.0,
+    cohesion: 0.0,
+    opening_energy: 1.0,
+    sliding_energy: 1.0,
+    friction: 0.0,
+    residual_friction: 0.0,
+    dilation: 0.0,
+    dilation_slip: f64::INFINITY,
+    mixed_mode: MixedMode::Power(1.0),
+    softening: InterfaceSoftening::Linear,
+    roughness: None,
+};
 
 /// A slab by the coordinates of its nodes along each axis [m]; without those along z it is plane, 1 m thick.
 #[derive(Clone)]
