@@ -301,7 +301,11 @@ impl Plan {
         if let Some(gas) = scene.gas() {
             let of = |measure| gas.measure(&scene.solid, measure, None);
             let amount = quantity(of(GasMeasure::Mass), "kg") + ", " + &quantity(of(GasMeasure::Energy), "J");
-            self.add("gas", format!("in {} holes: {amount} at the start", gas.hole_count()));
+            let faces = match gas.face_count() {
+                0 => String::new(),
+                faces => format!("; it may enter {faces} faces of interfaces"),
+            };
+            self.add("gas", format!("in {} holes: {amount} at the start{faces}", gas.hole_count()));
         }
         if let Some(liquid) = liquid_of(scene) {
             let own = case.flows.liquid.as_ref();

@@ -247,7 +247,7 @@ fn counts_across(case: &Case, body: &Own) -> Option<Diagnostic> {
         return None;
     }
     let found = format!(
-        "= \"{}\" in plane strain: a pull breaks it at {strength:.2} of tensile_strength, and cracks cost {:.2} of fracture_energy",
+        ".criterion = \"{}\" in plane strain: a pull breaks it at {strength:.2} of tensile_strength, and cracks cost {:.2} of fracture_energy",
         law.criterion.kind().name(),
         strength * strength
     );

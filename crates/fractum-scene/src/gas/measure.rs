@@ -34,10 +34,7 @@ impl Gas {
             GasMeasure::Mass => mass(),
             GasMeasure::Energy => cells().map(|cell| cell.amount.energy).sum(),
             GasMeasure::Volume => volume(),
-            GasMeasure::WettedArea => {
-                let holes = (0..self.hole_count()).filter(|index| hole.is_none_or(|hole| hole == *index));
-                holes.map(|index| self.wetted_area(solid, index)).sum()
-            }
+            GasMeasure::WettedArea => self.wetted_area(solid, hole),
             GasMeasure::LeakedMass => self.leaked().mass,
         }
     }

@@ -409,16 +409,26 @@ impl Gas {
         [self.energy, contents.supplied.energy, contents.leaked.energy]
     }
 
-    /// Finds the hole from which faces have got gas first.
+    /// Finds the hole from which faces have got gas first, themselves or in the cracks that were reached from them.
     fn trace(&mut self) {
-        let Gas { network, faces, holes, passages, vents, .. } = self;
-        let face_of = |cell: u32| (cell as usize).checked_sub(holes.len()).filter(|face| *face < faces.sides.len());
+        if self.faces.sides.is_empty() {
+            return;
+        }
+        let first = self.first_of_cracks();
+        let Gas { cracks, network, faces, holes, passages, vents, .. } = self;
+        let mouth_of = |cell: usize| match cell.checked_sub(first) {
+            Some(number) => cracks.cells().get(number).map(|own| own.mouth as usize),
+            None => Some(cell),
+        };
         for [a, b] in passages[*vents..].iter().map(|passage| passage.cells) {
             for [cell, other] in [[a, b], [b, a]] {
-                let Some(face) = face_of(cell).filter(|face| faces.from[*face].is_none()) else { continue };
+                let [Some(own), Some(beyond)] = [cell, other].map(|cell| mouth_of(cell as usize)) else { continue };
+                let Some(face) = own.checked_sub(holes.len()).filter(|face| faces.from[*face].is_none()) else {
+                    continue;
+                };
                 if network.contents().cells[cell as usize].mass > 0.0 {
-                    let known = face_of(other).and_then(|face| faces.from[face]);
-                    faces.from[face] = if (other as usize) < holes.len() { Some(other) } else { known };
+                    let of_face = |face: usize| faces.from[face];
+                    faces.from[face] = beyond.checked_sub(holes.len()).map_or(Some(beyond as u32), of_face);
                 }
             }
         }
@@ -463,11 +473,21 @@ impl Gas {
         self.network.contents().leaked
     }
 
-    /// Area of the walls of a hole, and of the interfaces and cracks that were reached from it, without load [m²].
-    pub fn wetted_area(&self, solid: &Solid, hole: usize) -> f64 {
-        let from_hole = (self.holes.len()..).zip(&self.faces.from).filter(|(_, from)| **from == Some(hole as u32));
-        let of_faces = from_hole.map(|(mouth, _)| self.cracks.wetted_area(solid, mouth));
-        self.cracks.wetted_area(solid, hole) + of_faces.sum::<f64>()
+    /// Number of faces of interfaces that gas may enter.
+    pub fn face_count(&self) -> usize {
+        self.faces.sides.len()
+    }
+
+    /// Area of the walls of a hole, and of the interfaces and cracks that were reached from it, without load; or of all walls where gas is [m²].
+    pub fn wetted_area(&self, solid: &Solid, hole: Option<usize>) -> f64 {
+        let first = self.holes.len();
+        let is_wet = |face: usize| match hole {
+            Some(hole) => self.faces.from[face] == Some(hole as u32),
+            None => self.network.contents().cells[first + face].mass > 0.0,
+        };
+        let holes = (0..first).filter(|own| hole.is_none_or(|hole| hole == *own));
+        let faces = (0..self.face_count()).filter(|face| is_wet(*face)).map(|face| first + face);
+        holes.chain(faces).map(|mouth| self.cracks.wetted_area(solid, mouth)).sum()
     }
 
     pub(crate) fn state(&self) -> GasState {

@@ -107,7 +107,8 @@ impl Interfaces {
             let took = taken.work - taken.friction - before.0;
             if is_wet && !law.is_bonded() {
                 surplus += took - (point.area * point.force.stored - before.1);
-            } else if is_wet && [friction, point.force.friction] == [Vec3::zeros(); 2] {
+            } else if is_wet && point.state.residual < 1.0 && [friction, point.force.friction] == [Vec3::zeros(); 2] {
+                // A whole bond is a spring, whose mean is exact.
                 surplus += took - point.area * work_by_law(&interface, state, [was, point.local(b - a)]);
             }
             if let Some(pressure) = pressure_in(pressures, point.kind) {
