@@ -308,3 +308,34 @@ fn plane_quadrilaterals_become_triangles_and_folded_ones_are_refused() {
         "{error}"
     );
 }
+
+/// Hexahedra that were turned around an axis, on which each has nodes of its own: prisms that share the axis.
+#[test]
+fn corners_in_one_place_are_one_node() {
+    let [sectors, layers] = [5, 2];
+    let (angle, height) = (0.3f64, 0.7);
+    let (mut nodes, mut elements) = (String::from("*NODE\n"), String::from("*ELEMENT, TYPE=C3D8, ELSET=part\n"));
+    let label = |layer: usize, ray: usize, is_rim: bool| 1 + 2 * (layer * (sectors + 1) + ray) + usize::from(is_rim);
+    for (layer, ray) in (0..=layers).flat_map(|layer| (0..=sectors).map(move |ray| (layer, ray))) {
+        let (sine, cosine) = (angle * ray as f64).sin_cos();
+        let z = height * layer as f64;
+        nodes +=
+            &format!("{}, 0, 0, {z}\n{}, {cosine}, {sine}, {z}\n", label(layer, ray, false), label(layer, ray, true));
+    }
+    for (layer, ray) in (0..layers).flat_map(|layer| (0..sectors).map(move |ray| (layer, ray))) {
+        let ring =
+            |layer| [(ray, false), (ray, true), (ray + 1, true), (ray + 1, false)].map(|(r, rim)| label(layer, r, rim));
+        let corners = words(&[ring(layer), ring(layer + 1)].concat(), ", ");
+        elements += &format!("{}, {corners}\n", 1 + layer * sectors + ray);
+    }
+    let mesh = read_inp((nodes + &elements).as_bytes()).unwrap();
+    let floor = 0.5 * sectors as f64 * angle.sin();
+    let total = height * layers as f64;
+    assert!((volumes(&mesh).sum::<f64>() - floor * total).abs() < 1e-12);
+    let area = |nodes: [u32; 3]| quality::area_vector(nodes.map(|n| mesh.nodes[n as usize])).norm();
+    let surface: f64 = topology::boundary_of_tetrahedra(&mesh.tetrahedra).iter().map(|facet| area(facet.nodes)).sum();
+    let walls = total * (2.0 + 2.0 * sectors as f64 * (0.5 * angle).sin());
+    assert!((surface - 2.0 * floor - walls).abs() < 1e-12, "{surface}");
+    let joined = sectors * (layers + 1);
+    assert!(mesh.notices.iter().any(|notice| notice.starts_with(&format!("{joined} corners"))), "{:?}", mesh.notices);
+}

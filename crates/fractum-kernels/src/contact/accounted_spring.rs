@@ -81,7 +81,9 @@ impl AccountedSpring {
             if overlap + free < stays * per_force { (way + free).max(0.0) / per_force } else { stays }
         } else {
             if is_new {
-                self.energy = 0.5 * full * overlap;
+                // What it had before this step, all of its energy where it begins at rest.
+                let before = (overlap - way).max(0.0);
+                self.energy = 0.5 * stiffness * before * before;
             }
             let next = overlap + way - (full + damper.max(-full)) * per_force;
             if next < 0.0 {
@@ -113,6 +115,25 @@ impl AccountedSpring {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    /// A contact may begin at the end of a step, but for rounding: the whole of the next way is overlap.
+    #[test]
+    fn a_mass_that_touches_at_an_instant_brings_its_energy_once() {
+        let (dt, stiffness) = (1.0, 0.3);
+        for overlap in [0.0, 1e-17] {
+            let mut spring = AccountedSpring::default();
+            let pressed = |overlap: f64, way: f64| Pressed { stiffness, mass: 1.0, viscosity: 0.0, overlap, way, dt };
+            if overlap > 0.0 {
+                spring.press(&pressed(overlap, 1.0));
+            }
+            let force = spring.press(&pressed(1.0, 1.0));
+            assert!((force - stiffness).abs() < 1e-15 && (spring.energy() - 0.5 * stiffness).abs() < 1e-15);
+        }
+        // One that overlaps at rest has the energy of its overlap.
+        let mut spring = AccountedSpring::default();
+        spring.press(&Pressed { stiffness, mass: 1.0, viscosity: 0.0, overlap: 0.5, way: 0.0, dt });
+        assert!((spring.energy() - 0.125 * stiffness).abs() < 1e-15);
+    }
 
     proptest! {
         /// A mass that meets the spring leaves as fast as it came, at any step and wherever in a step it touches.

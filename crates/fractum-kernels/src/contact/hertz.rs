@@ -287,7 +287,7 @@ impl ContactLaw for Hertz {
                 damping: 0.5 * (old.damper * approach + old.drag.dot(&across)) * motion.dt
                     + old.spring.part(approach * motion.dt)
                     + old.rolling.last_damping(motion),
-                friction: old_spring + old.rolling.stored(),
+                friction: old_spring + 0.5 * old_stiffness * old.slip.dot(&across) * motion.dt + old.rolling.stored(),
                 ..ContactForce::default()
             };
         }

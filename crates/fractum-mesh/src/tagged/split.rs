@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, connected};
 
 use super::element_type::{ElementType, Shape};
 use super::error::{Fault, Problem};
@@ -35,6 +35,7 @@ pub(super) fn split(
         return Ok(higher_order);
     }
     let places = same_places(&Mesh { nodes: raw.nodes.clone(), ..Mesh::default() });
+    let joined = join_collapsed(raw, index, &places);
     let rank = |node: u32| [places[node as usize], node].map(|node| raw.node_tags[node as usize]);
     let mut counts: BTreeMap<Shape, (usize, usize)> = BTreeMap::new();
     let mut pieces: Vec<Piece> = Vec::new();
@@ -84,7 +85,38 @@ pub(super) fn split(
     (raw.runs, raw.element_tags, raw.corners) = (runs, element_tags, corners);
     raw.limit_counts(bytes)?;
     notices.push(told(&counts));
+    if joined > 0 {
+        notices.push(format!(
+            "{joined} corners that lie in the place of another one of their element are one node with it"
+        ));
+    }
     Ok(higher_order)
+}
+
+/// Makes one node of the corners of an element that lie in one place, as at the axis around which hexahedra were turned; returns how many nodes that
+/// takes. The element stands for the shape that is left.
+fn join_collapsed(raw: &mut Raw, index: &NodeIndex, places: &[u32]) -> usize {
+    let mut links: Vec<[u32; 2]> = Vec::new();
+    for run in raw.runs.iter().filter(|run| simplex(run.kind.shape).is_some()) {
+        let size = run.kind.shape.corners();
+        for element in raw.corners[run.first_corner..run.first_corner + size * run.count].chunks_exact(size) {
+            let mut nodes = [0u32; 8];
+            let found = nodes.iter_mut().zip(element.iter().filter_map(|&tag| index.find(tag)));
+            let count = found.map(|(node, own)| *node = own).count();
+            for (corner, &a) in nodes[..count].iter().enumerate() {
+                let twins = nodes[..corner].iter().filter(|&&b| b != a && places[b as usize] == places[a as usize]);
+                links.extend(twins.map(|&b| [a, b]));
+            }
+        }
+    }
+    if links.is_empty() {
+        return 0;
+    }
+    let root = connected(raw.nodes.len(), links);
+    for tag in &mut raw.corners {
+        *tag = index.find(*tag).map_or(*tag, |node| raw.node_tags[root[node as usize] as usize]);
+    }
+    (0..).zip(&root).filter(|(node, root)| node != *root).count()
 }
 
 /// What a shape is split into; none of what stays.
