@@ -315,7 +315,7 @@ pub(crate) fn spring_sliding(draw: &mut Draw) -> Held {
             force = interface.load(Vec3::new(rise, slip, 0.0), &mut tried);
             let change = (-force.traction().x - pressure) / normal;
             rise += change;
-            if change.abs() < 1e-14 * pressure / normal {
+            if change.abs() < 1e-14 * (pressure / normal + rise.abs()) {
                 break;
             }
         }
