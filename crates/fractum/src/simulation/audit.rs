@@ -552,7 +552,7 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
                 "the overlap is {} of the smaller radius, and the law of contact is for small ones",
                 percent(*value)
             ),
-            "particles may pass through each other: press or hit them less, or make them stiffer (contact_modulus)",
+            "particles may pass through each other: press or hit them less, or make them stiffer (contact.young_modulus of their material)",
         ),
     };
     Warning::new(code, place, text).remedy(remedy)
