@@ -150,10 +150,11 @@ impl Usual {
         })
     }
 
-    /// The number of a node in the unit that makes it common.
+    /// The number of a node in the unit that makes it common; not in the one that it has.
     pub(super) fn meant(&self, node: &Node, value: f64) -> Option<String> {
         let number = number_of(node).unwrap_or(value);
-        let common = |size: f64| (self.common.0..=self.common.1).contains(&(number * size));
+        let is_own = |size: f64| (number * size - value).abs() <= 1e-9 * value.abs();
+        let common = |size: f64| (self.common.0..=self.common.1).contains(&(number * size)) && !is_own(size);
         let (unit, _) = self.units.iter().find(|(_, size)| common(*size))?;
         Some(written(number, unit))
     }
@@ -208,5 +209,8 @@ mod tests {
         assert!(meant(&EXPANSION, "12e-3 1/K", 12e-3).is_some() && meant(&EXPANSION, "-2e-6 1/K", -2e-6).is_none());
         assert_eq!(meant(&YOUNG_MODULUS, "2*E", 50.0), named("50 GPa"));
         assert_eq!(meant(&YOUNG_MODULUS, "21 GPa", 21e9), None);
+        let place = Place { file: "case.toml".into(), line: 1, column: 1, key: "density".into() };
+        let node = Node { value: Value::Text("2600 kg/m^3".into()), place, raw: "\"2600 kg/m^3\"".into() };
+        assert_eq!(DENSITY.meant(&node, 2600.0), None);
     }
 }

@@ -87,6 +87,8 @@ codes! {
     PlaneStrain = "plane-strain",
     /// A pressure that pulls.
     Suction = "suction",
+    /// Bodies of several materials that share the in-situ stress by their stiffness.
+    SharedStress = "shared-stress",
     /// Coordinates too far from the origin for small displacements.
     FarFromOrigin = "far-from-origin",
     /// A place that is measured and leaves with a body.

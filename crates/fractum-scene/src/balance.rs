@@ -136,12 +136,12 @@ fn note_what_the_ledger_hides(scene: &mut Scene) {
     if scale <= 0.0 {
         return;
     }
+    if !late {
+        return;
+    }
     let stopped = scene.books.stopped / scale;
     if stopped > STOPPED {
         scene.note(Notice::Stopped, Site::Scene, stopped);
-    }
-    if !late {
-        return;
     }
     let changed = (scene.books.time_step / scale).abs();
     if changed > VISIBLE_CHANGE {

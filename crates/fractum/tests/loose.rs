@@ -543,3 +543,42 @@ fn a_rigid_body_that_falls_into_another_one_is_told() {
         assert_eq!(told.contains("\\\"box\\\" has moved into \\\"floor\\\""), is_told, "{told}");
     }
 }
+
+/// A bat turns at 10/s and hits a ball that waits 0.1 m from its axis, at first with nearly no work: twice its speed there.
+#[test]
+fn a_bat_that_turns_hits_a_ball() {
+    const CASE: &str = r#"fractum = 1
+[materials.glass]
+density = "2500 kg/m^3"
+young_modulus = "1 GPa"
+poisson_ratio = 0.25
+contact = { friction = 0, restitution = 1 }
+[[bodies]]
+name = "ball"
+kind = "particles"
+material = "glass"
+particle_radius = "5 mm"
+centre = ["100 mm", "6.1 mm", "0 mm"]
+[[bodies]]
+name = "bat"
+kind = "rigid"
+shape = "box"
+point = ["-120 mm", "-1 mm", "-10 mm"]
+size = ["240 mm", "2 mm", "20 mm"]
+spin = { z = "10 1/s" }
+contact = { friction = 0, restitution = 1 }
+[solver]
+end = "1 ms"
+[[probes]]
+name = "speed"
+velocity = { group = "ball", along = "y" }
+[[probes]]
+name = "work"
+work = { group = "bat" }
+"#;
+    let told = run(&Workplace::new(CASE), "out", "1");
+    let value = |name: &str| told["probes"][name]["final"].as_f64().unwrap();
+    let mass = 2500.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.005f64.powi(3);
+    assert!((value("speed") / 2.0 - 1.0).abs() < 0.01, "{}", value("speed"));
+    assert!((value("work") / (2.0 * mass) - 1.0).abs() < 0.01, "{}", value("work"));
+}

@@ -52,6 +52,8 @@ fn a_bead_pressed_flat_is_told_once_with_its_share_of_the_radius() {
     );
     // A tenth of the radius on each side is reached after 2 ms, and looked for every 20 steps.
     assert!(text.starts_with("the overlap is 10"), "{text}");
+    let remedy = pressed["warnings"][0]["remedy"].as_str().unwrap();
+    assert!(remedy.contains("contact.young_modulus"), "a key that there is: {remedy}");
     let light = BEAD.replace("\"19 ms\"", "\"1.5 ms\"");
     fs::write(place.path("case.toml"), light).unwrap();
     let light = run(&place, "light", "1");

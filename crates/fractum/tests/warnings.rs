@@ -467,6 +467,42 @@ fn mistakes_are_told_with_their_code() {
     assert!(missed.is_empty(), "{}", missed.join("\n"));
 }
 
+/// A block that begins on a plane is stopped from the first step on, before there is any energy that it could lose.
+#[test]
+fn a_block_that_lies_on_a_plane_loses_nothing() {
+    let case = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[materials.rock]
+density = "2600 kg/m^3"
+young_modulus = "1 GPa"
+poisson_ratio = 0.2
+contact = { friction = 0.3 }
+[[bodies]]
+name = "block"
+kind = "solid"
+group = "body"
+material = "rock"
+[[bodies]]
+name = "floor"
+kind = "rigid"
+shape = "plane"
+normal = "z"
+[[loads]]
+gravity = { x = "5 m/s^2", z = "-9 m/s^2" }
+[solver]
+end = "4 ms"
+[[probes]]
+name = "speed"
+velocity = { group = "body", along = "x" }
+"#;
+    let mesh = structured_box([3, 3, 2], Vec3::new(0.04, 0.04, 0.02), None);
+    let place = Workplace::with_mesh(case, &mesh_bytes(&mesh, MshFormat::V4_1Binary));
+    let speed = run(&place, "out", "1")["probes"]["speed"]["final"].as_f64().unwrap();
+    assert!((speed / ((5.0 - 0.3 * 9.0) * 4e-3) - 1.0).abs() < 0.02, "it slides: {speed}");
+    let told = listed(&place, "out");
+    assert!(told.iter().all(|[code, ..]| code != "impact-loss"), "{told:?}");
+}
+
 /// The file of a plate, two of whose triangles are one quadrilateral.
 fn with_quadrilateral(mesh: &Mesh) -> Vec<u8> {
     let nodes = |list: &[u32]| list.iter().map(|node| format!(" {}", node + 1)).collect::<String>();

@@ -9,7 +9,9 @@ use fractum_mesh::bodies::{SLENDER, SolidElements};
 use fractum_output::number::{percent, quantity};
 use fractum_output::warning::Code;
 
-use crate::model::{BodyKind, Case, LoadKind, Motion, Selection, SolidBody, SolverKind, Support, SurfaceSupport};
+use crate::model::{
+    BodyKind, Case, LoadKind, Motion, RigidShape, Selection, SolidBody, SolverKind, Support, SurfaceSupport,
+};
 use crate::{Diagnostic, Place, Spanned, TimeFunction};
 
 /// Share of the deflection of a bent body above which it is told that its elements take it away.
@@ -39,7 +41,26 @@ pub(super) fn pieces(mesh: &Mesh, bodies: &[Own]) -> Vec<u32> {
     connected(bodies.len(), shared.map(|pair| [pair[0].1, pair[1].1]))
 }
 
+/// Nodes that are meant, ascending; none of sets of particles.
+pub(super) fn nodes_of(mesh: &Mesh, on: &Selection) -> Option<Vec<u32>> {
+    let mut nodes = match &on.group {
+        Some(group) => mesh.group_nodes(&group.value),
+        None => (0..mesh.nodes.len() as u32).collect(),
+    };
+    if let Some(within) = &on.within {
+        nodes.retain(|&node| within.value.holds_at(mesh.nodes[node as usize]));
+    }
+    (!nodes.is_empty()).then_some(nodes)
+}
+
 impl Own<'_> {
+    /// Those of its nodes that a selection means, ascending.
+    fn nodes_of(&self, mesh: &Mesh, on: &Selection) -> Vec<u32> {
+        let mut nodes = nodes_of(mesh, on).unwrap_or_default();
+        nodes.retain(|node| self.nodes.binary_search(node).is_ok());
+        nodes
+    }
+
     /// Its elements.
     pub(super) fn elements(&self, mesh: &Mesh) -> SolidElements {
         let groups = mesh.group(&self.solid.group.value);
@@ -53,6 +74,11 @@ impl Own<'_> {
     }
 }
 
+/// What a message says of a selection behind its key: the group; nothing of a condition.
+pub(super) fn named(on: &Selection) -> String {
+    on.group.as_ref().map_or_else(String::new, |group| format!("= \"{}\"", group.value))
+}
+
 /// What moves or loads a piece at one place.
 struct Driven<'a> {
     place: &'a Place,
@@ -60,8 +86,7 @@ struct Driven<'a> {
 }
 
 fn driven<'a>(mesh: &Mesh, on: &'a Selection) -> Option<Driven<'a>> {
-    let group = on.group.as_ref().filter(|_| on.within.is_none())?;
-    Some(Driven { place: &group.place, nodes: mesh.group_nodes(&group.value) })
+    Some(Driven { place: on.place()?, nodes: nodes_of(mesh, on)? })
 }
 
 /// Solids that are moved, or loaded by a force, at one place and that nothing holds for long.
@@ -146,8 +171,8 @@ pub(super) fn moved_as_a_whole(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Opti
         (0..3).filter(|&axis| moves(&support.motion[axis])).map(|axis| ["x", "y", "z"][axis]).collect();
     let along = along.join(" and ");
     let found = format!(
-        "= \"{}\": it moves the bodies along {along}, and nothing holds them there: they follow without strain",
-        support.on.label()
+        "{}: it moves the bodies along {along}, and nothing holds them there: they follow without strain",
+        named(&support.on)
     );
     let note = Diagnostic::warning(Code::Unheld, one.place, found);
     Some(note.remedy(format!("hold another side along {along}")))
@@ -240,11 +265,13 @@ pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own, is_alone: bool) -> Opti
         return None;
     }
     let elements = body.elements(mesh);
+    let vibrates = case.solver.kind == SolverKind::Modes;
     let (found, remedy) = match elements.layers() {
         Some(few) => (
             format!(
-                "it has {} through its thickness, and is bent",
-                if few == 1 { "one element" } else { "two elements" }
+                "it has {} through its thickness, and {}",
+                if few == 1 { "one element" } else { "two elements" },
+                if vibrates { "bends as it vibrates" } else { "is bent" }
             ),
             "take three through the thickness, better six".to_string(),
         ),
@@ -261,10 +288,13 @@ pub(super) fn thin(case: &Case, mesh: &Mesh, body: &Own, is_alone: bool) -> Opti
                 ", or formulation = \"smoothed\", which loses less"
             };
             let times = (stiffening / (0.5 * TOO_STIFF)).sqrt();
-            (
-                format!("it is bent, and its elements take some {} of the deflection away", percent(lost)),
-                format!("take elements {times:.1} times as small{smoothed}"),
-            )
+            let found = if vibrates {
+                let raised = (1.0 + stiffening).sqrt() - 1.0;
+                format!("it bends as it vibrates, and its elements make that some {} too fast", percent(raised))
+            } else {
+                format!("it is bent, and its elements take some {} of the deflection away", percent(lost))
+            };
+            (found, format!("take elements {times:.1} times as small{smoothed}"))
         }
     };
     let found = format!("= \"{}\": {found}", body.name.value);
@@ -305,7 +335,8 @@ fn stiffening(mesh: &Mesh, body: &Own, elements: &SolidElements) -> f64 {
     sum / (whole * thickness * thickness)
 }
 
-/// Whether a slender body is moved or loaded across: along an axis of the case along which it is thin.
+/// Whether a slender body is bent: moved, loaded, pressed by round tools or heated on one side across, along an axis of the case along which it
+/// is thin; or free to bend as it vibrates.
 fn is_bent(case: &Case, mesh: &Mesh, body: &Own) -> bool {
     let (low, high) = extent(mesh, std::slice::from_ref(body));
     let size = high - low;
@@ -315,24 +346,29 @@ fn is_bent(case: &Case, mesh: &Mesh, body: &Own) -> bool {
     if SLENDER * least > most {
         return false;
     }
-    let own = |on: &Selection| -> Vec<u32> {
-        let Some(group) = on.group.as_ref().filter(|_| on.within.is_none()) else { return Vec::new() };
-        let mut nodes = mesh.group_nodes(&group.value);
-        nodes.retain(|node| body.nodes.binary_search(node).is_ok());
-        nodes
-    };
+    let own = |on: &Selection| body.nodes_of(mesh, on);
     let held: Vec<Vec<u32>> = case.supports.iter().map(|support| own(&support.on)).collect();
     // What is guided along its length does not bend.
-    if held.iter().all(Vec::is_empty) || held.iter().any(|nodes| 5 * nodes.len() > 2 * body.nodes.len()) {
+    if held.iter().any(|nodes| 5 * nodes.len() > 2 * body.nodes.len()) {
         return false;
     }
+    let is_held = held.iter().any(|nodes| !nodes.is_empty());
+    let at = |node: &u32| mesh.nodes[*node as usize];
     let flat = |nodes: &[u32], axis: usize| {
-        let places = nodes.iter().map(|&node| mesh.nodes[node as usize][axis]);
+        let places = nodes.iter().map(|node| at(node)[axis]);
         let [low, high] = places.fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
         high - low < 0.1 * least
     };
-    let thin: Vec<usize> = axes.filter(|&axis| size[axis] <= 1.1 * least).collect();
-    thin.into_iter().any(|axis| {
+    // Nor does what lies with a whole side on a support.
+    let lies = |axis: usize| {
+        [low[axis], high[axis]].into_iter().any(|side| {
+            let is_there = |node: &u32| (at(node)[axis] - side).abs() < 1e-6 * least;
+            let all = body.nodes.iter().filter(|node| is_there(node)).count();
+            let holds = |nodes: &Vec<u32>| 10 * nodes.iter().filter(|node| is_there(node)).count() > 9 * all;
+            case.supports.iter().zip(&held).any(|(support, nodes)| support.motion[axis].is_some() && holds(nodes))
+        })
+    };
+    let bends = |axis: usize| {
         let moved = |motion: &Option<Spanned<Motion>>| motion.as_ref().is_some_and(|motion| !is_at_rest(&motion.value));
         let by_support =
             case.supports.iter().zip(&held).any(|(support, nodes)| !nodes.is_empty() && moved(&support.motion[axis]));
@@ -347,8 +383,63 @@ fn is_bent(case: &Case, mesh: &Mesh, body: &Own) -> bool {
                 !nodes.is_empty() && flat(&nodes, axis)
             }
         });
-        by_support || by_load || body.solid.initial_velocity[axis].is_some()
-    })
+        let [round_driven, round_still] = round_tools(case, axis);
+        let by_tool = round_driven && (is_held || round_still);
+        let pushed = by_support || by_load || body.solid.initial_velocity[axis].is_some();
+        (pushed && is_held) || by_tool || is_heated_across(case, mesh, body, axis)
+    };
+    let vibrates = case.solver.kind == SolverKind::Modes;
+    axes.filter(|&axis| size[axis] <= 1.1 * least).any(|axis| !lies(axis) && (vibrates || bends(axis)))
+}
+
+/// Whether round rigid bodies move along an axis, and whether others stand still: rollers and noses of a bending test.
+fn round_tools(case: &Case, axis: usize) -> [bool; 2] {
+    let mut found = [false; 2];
+    for body in &case.bodies {
+        let BodyKind::Rigid(rigid) = &body.kind else { continue };
+        let is_round = match &rigid.shape {
+            RigidShape::Cylinder { axis: along, .. } => along[axis].abs() < 0.1,
+            RigidShape::Sphere { .. } => true,
+            _ => false,
+        };
+        if is_round && !rigid.inside {
+            let moves = rigid.velocity[axis].is_some() || rigid.free[axis] || rigid.servo.is_some();
+            found[usize::from(!moves)] = true;
+        }
+    }
+    found
+}
+
+/// Whether a body that expands is heated on one of its two sides across an axis alone, or unevenly from one to the other.
+fn is_heated_across(case: &Case, mesh: &Mesh, body: &Own, axis: usize) -> bool {
+    let Some(heat) = &case.flows.heat else { return false };
+    let thermal = case.materials[body.solid.material].thermal.as_ref();
+    if case.solver.kind == SolverKind::Heat || thermal.is_none_or(|thermal| thermal.value.expansion == 0.0) {
+        return false;
+    }
+    let (low, high) = extent(mesh, std::slice::from_ref(body));
+    let sides = [low[axis], high[axis]];
+    let mut is_heated = [false; 2];
+    for condition in &heat.conditions {
+        let nodes = body.nodes_of(mesh, &condition.on);
+        if nodes.is_empty() {
+            continue;
+        }
+        let function = &condition.kind.function().value;
+        let at = |side: f64| {
+            let mut place = 0.5 * (low + high);
+            place[axis] = side;
+            function.value(0.5 * case.solver.end, place)
+        };
+        if function.depends_on_position() && at(sides[0]) != at(sides[1]) {
+            return true;
+        }
+        for (side, is_heated) in sides.into_iter().zip(&mut is_heated) {
+            let is_near = |node: &u32| (mesh.nodes[*node as usize][axis] - side).abs() < 0.1 * (sides[1] - sides[0]);
+            *is_heated |= nodes.iter().all(is_near);
+        }
+    }
+    is_heated[0] != is_heated[1]
 }
 
 fn is_at_rest(motion: &Motion) -> bool {

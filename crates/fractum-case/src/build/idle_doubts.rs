@@ -4,10 +4,10 @@ use fractum_math::Vec3;
 use fractum_mesh::Mesh;
 use fractum_output::warning::Code;
 
-use super::body_doubts::Own;
+use super::body_doubts::{Own, nodes_of};
 use crate::measure::Count;
 use crate::model::{
-    BodyKind, Case, Load, LoadKind, LooseSource, Material, Motion, Probe, ProbeKind, Selection, SolverKind, Support,
+    BodyKind, Case, Load, LoadKind, LooseSource, Material, Motion, Probe, ProbeKind, SolverKind, Support,
 };
 use crate::{Diagnostic, Place, TimeFunction};
 
@@ -100,18 +100,6 @@ pub(super) fn all_prescribed(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option
     let found = format!("= \"{}\": supports prescribe the motion of every node along every axis", whole.on.label());
     let note = Diagnostic::warning(Code::NoEffect, whole.on.place()?, found);
     Some(note.remedy("nothing is left to compute: take the group of one side"))
-}
-
-/// Nodes that are meant, ascending; none of sets of particles.
-fn nodes_of(mesh: &Mesh, on: &Selection) -> Option<Vec<u32>> {
-    let mut nodes = match &on.group {
-        Some(group) => mesh.group_nodes(&group.value),
-        None => (0..mesh.nodes.len() as u32).collect(),
-    };
-    if let Some(within) = &on.within {
-        nodes.retain(|&node| within.value.holds_at(mesh.nodes[node as usize]));
-    }
-    (!nodes.is_empty()).then_some(nodes)
 }
 
 /// A scene that nothing moves in any stage.

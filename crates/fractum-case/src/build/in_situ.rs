@@ -1,24 +1,32 @@
 //! Stress of the solids before the run: tractions of the far field, and what must fit to them.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
+use fractum_fem::fields::element_fields;
 use fractum_fem::{Body, ElementKind, Plane, Solid, Stiffness};
 use fractum_math::{Mat3, Sym3, Vec3};
 use fractum_output::number::quantity;
+use fractum_output::warning::Code;
 use fractum_scene::{Load, NodalForce};
 use nalgebra::{Matrix6, Vector6};
 
 use super::Context;
 use super::bodies::Numbering;
+use super::body_doubts::named;
 use super::conditions::Surface;
-use crate::Place;
-use crate::model::{InSitu, LoadKind, Selection};
+use crate::model::{Case, InSitu, LoadKind, Selection};
+use crate::{Diagnostic, Place};
 
 /// How far a stress may be from linear, over its largest component; and forces from balance, over the largest.
 const LINEAR: f64 = 1e-9;
 const BALANCE: f64 = 1e-6;
 /// How far supports may be from following the far field, over its displacement across the body.
 const FOLLOWS: f64 = 1e-6;
+/// How far the mean stress of a body may be from the one asked for, over its largest component.
+const SHARED: f64 = 0.05;
+/// How far the area of a side may be from that of the box, over it.
+const WHOLE: f64 = 1e-6;
 
 /// A stress σ(x) = σ⁰ + Σ x_k ∂σ/∂x_k about a point.
 struct FarField {
@@ -51,21 +59,73 @@ pub(super) fn in_situ_loads(
     on.sort_unstable();
     on.dedup();
     let Some(field) = far_field(context, stress, &numbering.positions) else { return Vec::new() };
-    if on.is_empty() && context.diagnostics.is_empty() {
-        context.error(&stress.place, " acts on no facet", "absorbing or elastic supports, or groups of facets");
+    let is_held = context.case.supports.iter().any(|support| support.motion.iter().any(Option::is_some));
+    if context.case.is_first_stage() && on.is_empty() && !is_held && context.diagnostics.is_empty() {
+        context.error(&stress.place, ": it acts on no facet", "absorbing or elastic supports, or groups of facets");
     }
     if context.case.is_first_stage() {
         check_weight(context, &stress.place, &field, solid);
     }
     if context.diagnostics.is_empty() && context.case.is_first_stage() {
-        check_in_situ_supports(context, &field, solid, numbering);
+        context.held_by_far_field = check_in_situ_supports(context, &field, (surface, &on), solid, numbering);
     }
     if context.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }
 }
 
+/// A body among bodies of other materials whose mean stress at the start is not the one asked for.
+pub(super) fn shared(case: &Case, solid: &Solid) -> Option<Diagnostic> {
+    let stress = case.in_situ.as_ref()?;
+    let there = bodies_there(case, solid);
+    let &first = there.first()?;
+    if there.iter().all(|&body| is_alike(solid.body(first), solid.body(body))) {
+        return None;
+    }
+    let counts = |component: usize| !solid.is_plane() || [0, 1, 3].contains(&component);
+    let mut largest = 0.0f64;
+    let mut worst: Option<(f64, usize, usize, [f64; 2])> = None;
+    for body in there {
+        let (mut volume, mut found, mut asked) = (0.0, Sym3::ZERO, Sym3::ZERO);
+        let is_plane = solid.body(body).shape == ElementKind::T3;
+        for (element, (own, _)) in solid.body(body).elements.iter().zip(element_fields(solid, body, None)) {
+            let corners = element.map(|node| solid.reference[node as usize]);
+            let [a, b, c] = [1, 2, 3].map(|k| corners[k] - corners[0]);
+            let (size, middle) = match is_plane {
+                true => (a.cross(&b).norm(), corners[..3].iter().sum::<Vec3>() / 3.0),
+                false => (a.cross(&b).dot(&c).abs(), corners.iter().sum::<Vec3>() / 4.0),
+            };
+            let far = stress.at(middle);
+            largest = largest.max(largest_of(far));
+            (volume, found, asked) = (volume + size, found + own * size, asked + far * size);
+        }
+        for component in (0..6).filter(|&component| counts(component)) {
+            let [found, asked] = [found, asked].map(|sum| sum.0[component] / volume);
+            if worst.is_none_or(|(off, ..)| (found - asked).abs() > off) {
+                worst = Some(((found - asked).abs(), body, component, [found, asked]));
+            }
+        }
+    }
+    let (_, body, component, values) = worst.filter(|(off, ..)| *off > SHARED * largest)?;
+    let [found, asked] = values.map(|stress| quantity(stress, "Pa"));
+    let found = format!(
+        ".stress: body \"{}\" begins with a mean {} of {found}, and {asked} is asked: joined bodies of unlike stiffness share the stress",
+        solid.body(body).name,
+        ["xx", "yy", "zz", "xy", "yz", "zx"][component],
+    );
+    let note = Diagnostic::warning(Code::SharedStress, &stress.place, found);
+    Some(note.remedy(
+        "that is right for rock that was pressed as a whole; layers with a stress of their own are not modelled",
+    ))
+}
+
+/// Whether two bodies have one elasticity.
+fn is_alike(a: &Body, b: &Body) -> bool {
+    let moduli = |body: &Body| (body.elastic.young_modulus, body.elastic.poisson_ratio);
+    moduli(a) == moduli(b) && a.bedding == b.bedding
+}
+
 /// Numbers of the bodies that are there.
-fn bodies_there(context: &Context<'_>, solid: &Solid) -> Vec<usize> {
-    let is_gone = |name: &String| context.case.excavation.as_ref().is_some_and(|own| own.gone.contains(name));
+fn bodies_there(case: &Case, solid: &Solid) -> Vec<usize> {
+    let is_gone = |name: &String| case.excavation.as_ref().is_some_and(|own| own.gone.contains(name));
     (0..solid.body_count()).filter(|&body| !is_gone(&solid.body(body).name)).collect()
 }
 
@@ -105,7 +165,8 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
     }
     let axes = if solid.is_plane() { 2 } else { 3 };
     let divergence = Vec3::from_fn(|a, _| (0..axes).map(|k| field.slope[k].to_matrix()[(a, k)]).sum::<f64>());
-    for body in bodies_there(context, solid) {
+    let there = bodies_there(context.case, solid);
+    for &body in &there {
         let density = solid.body(body).elastic.density;
         let weight = gravity * density;
         let scale = field.largest / field.size.max() * BALANCE + BALANCE * weight.norm();
@@ -118,57 +179,130 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
             quantity(weight[axis], "Pa/m")
         );
         let fitting = quantity(-divergence[axis] / density, "m/s^2");
-        context.error(
-            place,
-            found,
-            format!("gravity {name} = \"{fitting}\" among the loads, or a stress that goes with it"),
-        );
+        let is_one = there.iter().all(|&other| (solid.body(other).elastic.density / density - 1.0).abs() < BALANCE);
+        let expected = if is_one {
+            format!("gravity {name} = \"{fitting}\" among the loads, or a stress that goes with it")
+        } else {
+            "bodies of one density, since the stress is linear; or gravity in a first stage at rest, without [in_situ]"
+                .to_owned()
+        };
+        context.error(place, found, expected);
         return;
     }
 }
 
-/// Supports must be able to follow the displacements of the far field: what they hold cannot be strained.
-fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &Solid, numbering: &Numbering) {
-    let same = |a: &Body, b: &Body| {
-        let moduli = |body: &Body| (body.elastic.young_modulus, body.elastic.poisson_ratio);
-        moduli(a) == moduli(b) && a.bedding == b.bedding
-    };
-    let there = bodies_there(context, solid);
-    let Some(&first) = there.first() else { return };
-    if there.iter().any(|&body| !same(solid.body(first), solid.body(body))) {
-        return; // Layers have no common far field: their supports show in the balance of forces.
-    }
-    let mut held: Vec<(usize, Vec3, usize)> = Vec::new();
+/// What supports hold under the far field: an axis of a place.
+struct Held {
+    /// Number of the support.
+    support: usize,
+    node: u32,
+    place: Vec3,
+    axis: usize,
+}
+
+/// Supports must be able to follow the displacements of the far field, or hold what it asks of whole sides of a box of one material: their
+/// nodes then begin where the far field has them, which is returned.
+///
+/// - `on`: facets with its tractions
+fn check_in_situ_supports(
+    context: &mut Context<'_>,
+    field: &FarField,
+    (surface, on): (&Surface, &[[u32; 3]]),
+    solid: &Solid,
+    numbering: &Numbering,
+) -> Option<Vec<Vec3>> {
+    let there = bodies_there(context.case, solid);
+    let &first = there.first()?;
+    let is_one = there.iter().all(|&body| is_alike(solid.body(first), solid.body(body)));
+    let mut held: Vec<Held> = Vec::new();
     for (index, support) in context.case.supports.iter().enumerate() {
         if context.names_particles(&support.on) || support.motion.iter().all(Option::is_none) {
             continue;
         }
         for node in context.selected_nodes(&support.on, numbering) {
+            let place = numbering.positions[node as usize];
             let axes = (0..3).filter(|&axis| support.motion[axis].is_some());
-            held.extend(axes.map(|axis| (index, numbering.positions[node as usize], axis)));
+            held.extend(axes.map(|axis| Held { support: index, node, place, axis }));
         }
     }
-    let displacement = field.displacements(solid.body(first));
-    let rows = held.iter().map(|&(_, place, axis)| (rigid(place, field, axis), displacement(place)[axis]));
+    if is_one {
+        let (row, off) = not_following(&held.iter().collect::<Vec<_>>(), field, solid.body(first))?;
+        if let Some(sides) = WholeSides::of(surface, &numbering.positions)
+            && held.iter().all(|one| sides.have(&one.place))
+            && are_borne(&held, field, (surface, on))
+        {
+            return Some(numbering.positions.iter().copied().map(field.displacements(solid.body(first))).collect());
+        }
+        contradicts(
+            context,
+            row,
+            off,
+            "supports on planes of symmetry, without shear stress, or on whole sides of a box, whose shear they bear; or none, with absorbing or elastic ones",
+        );
+        return None;
+    }
+    // Bodies of several materials have no common far field, but what holds one of them must let it follow its own.
+    for body in there {
+        let mut nodes: Vec<u32> = solid.body(body).elements.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        let own: Vec<&Held> = held.iter().filter(|one| nodes.binary_search(&one.node).is_ok()).collect();
+        if let Some((row, off)) = not_following(&own, field, solid.body(body)) {
+            contradicts(
+                context,
+                row,
+                off,
+                "bodies of one material, or the stress (in_situ.groups) instead of a support on one of two sides that face each other",
+            );
+            break;
+        }
+    }
+    None
+}
+
+/// Whether supports hold facets along every axis along which the stress pulls them, as far as its tractions do not act there: a roller bears
+/// no shear.
+fn are_borne(held: &[Held], field: &FarField, (surface, on): (&Surface, &[[u32; 3]])) -> bool {
+    let mut bits: HashMap<u32, u8> = HashMap::new();
+    held.iter().for_each(|one| *bits.entry(one.node).or_default() |= 1 << one.axis);
+    let mut pulled: Vec<[u32; 3]> = on.to_vec();
+    pulled.iter_mut().for_each(|facet| facet.sort_unstable());
+    pulled.sort_unstable();
+    surface.facets.iter().all(|facet| {
+        let corners: Vec<u8> = surface.corners(facet).iter().map(|node| bits.get(node).copied().unwrap_or(0)).collect();
+        let mut nodes = *facet;
+        nodes.sort_unstable();
+        if corners.contains(&0) || pulled.binary_search(&nodes).is_ok() {
+            return true;
+        }
+        let traction = field.at(surface.middle(facet)).to_matrix() * surface.area_vector(facet).normalize();
+        let is_borne = |axis: usize| corners.iter().all(|bits| bits & (1 << axis) != 0);
+        let axes = if corners.len() == 2 { 2 } else { 3 };
+        (0..axes).all(|axis| traction[axis].abs() < BALANCE * field.largest || is_borne(axis))
+    })
+}
+
+/// The place that supports keep farthest from its displacement in the far field, and by how much [m], where they do not let the body follow it.
+fn not_following<'h>(held: &[&'h Held], field: &FarField, body: &Body) -> Option<(&'h Held, f64)> {
+    let displacement = field.displacements(body);
+    let rows = held.iter().map(|one| (rigid(one.place, field, one.axis), displacement(one.place)[one.axis]));
     let (mut gram, mut right) = (Matrix6::<f64>::zeros(), Vector6::<f64>::zeros());
     for (row, u) in rows.clone() {
         gram += row * row.transpose();
         right -= row * u;
     }
-    let Some(motion) =
-        gram.pseudo_inverse(1e-9 * gram.trace().max(f64::MIN_POSITIVE)).ok().map(|inverse| inverse * right)
-    else {
-        return;
-    };
-    let strain = field.largest / solid.body(first).elastic.young_modulus;
+    let motion = gram.pseudo_inverse(1e-9 * gram.trace().max(f64::MIN_POSITIVE)).ok().map(|inverse| inverse * right)?;
+    let strain = field.largest / body.elastic.young_modulus;
     let off = rows.map(|(row, u)| (row.dot(&motion) + u).abs());
-    let worst = off.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-    let Some((row, off)) = worst.filter(|(_, off)| *off > FOLLOWS * strain * field.size.norm()) else { return };
-    let (support, place, axis) = held[row];
+    let (row, off) = off.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    (off > FOLLOWS * strain * field.size.norm()).then(|| (held[row], off))
+}
+
+fn contradicts(context: &mut Context<'_>, &Held { support, place, axis, .. }: &Held, off: f64, expected: &str) {
     let support = &context.case.supports[support];
     let found = format!(
-        "= \"{}\" contradicts the in-situ stress: it holds {} at ({:.4e}, {:.4e}, {:.4e}) m, which the stress moves by {}",
-        support.label(),
+        "{} contradicts the in-situ stress: it holds {} at ({:.4e}, {:.4e}, {:.4e}) m, which the stress moves by {}",
+        named(&support.on),
         ["x", "y", "z"][axis],
         place.x,
         place.y,
@@ -176,11 +310,45 @@ fn check_in_situ_supports(context: &mut Context<'_>, field: &FarField, solid: &S
         quantity(off, "m")
     );
     let at = support.on.place().cloned().unwrap_or_else(|| context.whole_case());
-    context.error(
-        &at,
-        found,
-        "supports on planes of symmetry, without shear stress; or none, with absorbing or elastic ones",
-    );
+    context.error(&at, found.trim_start(), expected);
+}
+
+/// Sides of the box around the solids that these have as a whole, without a hole or a cut corner.
+struct WholeSides {
+    /// Axis across each side, and its coordinate [m].
+    sides: Vec<(usize, f64)>,
+    /// Distance from a side within which a place is on it [m].
+    within: f64,
+}
+
+impl WholeSides {
+    /// None where there is none.
+    fn of(surface: &Surface, positions: &[Vec3]) -> Option<WholeSides> {
+        let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        positions.iter().for_each(|p| (low, high) = (low.inf(p), high.sup(p)));
+        let size = high - low;
+        let axes = if size.z > 0.0 { 0..3 } else { 0..2 };
+        let within = 1e-6 * size.norm();
+        let whole = |axis: usize, at: f64| {
+            let asked: f64 = axes.clone().filter(|&other| other != axis).map(|other| size[other]).product();
+            let on_side = |facet: &&[u32; 3]| {
+                surface.corners(facet).iter().all(|&node| (positions[node as usize][axis] - at).abs() < within)
+            };
+            let measure = |facet: &[u32; 3]| match *surface.corners(facet) {
+                [a, b] => (positions[b as usize] - positions[a as usize]).norm(),
+                _ => surface.area_vector(facet).norm(),
+            };
+            let there: f64 = surface.facets.iter().filter(on_side).map(measure).sum();
+            (there / asked - 1.0).abs() < WHOLE
+        };
+        let both = axes.clone().flat_map(|axis| [(axis, low[axis]), (axis, high[axis])]);
+        let sides: Vec<(usize, f64)> = both.filter(|&(axis, at)| whole(axis, at)).collect();
+        (!sides.is_empty()).then_some(WholeSides { sides, within })
+    }
+
+    fn have(&self, place: &Vec3) -> bool {
+        self.sides.iter().any(|&(axis, at)| (place[axis] - at).abs() < self.within)
+    }
 }
 
 /// A rigid motion of a place along an axis: translations, and rotations times the size of the body.

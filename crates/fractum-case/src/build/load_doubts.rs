@@ -5,7 +5,7 @@ use fractum_mesh::Mesh;
 use fractum_output::number::{percent, quantity, significant};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, extent, passage, wave_speed};
+use super::body_doubts::{Own, extent, named, nodes_of, passage, wave_speed};
 use crate::measure::Reaction;
 use crate::model::{BodyKind, Case, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind, Support};
 use crate::{Diagnostic, Place, Spanned, TimeFunction};
@@ -235,15 +235,14 @@ fn reflected(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
         Some((load.kind.on()?.0, pulse.value.rise()?[0]))
     });
     let (on, start) = pulse?;
-    let loaded = mesh.group_nodes(&on.group.as_ref()?.value);
+    let loaded = nodes_of(mesh, on)?;
     let axes = if bodies.iter().all(|body| body.plane) { 0..2 } else { 0..3 };
     let held = case.supports.iter().find(|support| {
         let fixed =
             |axis: usize| matches!(&support.motion[axis], Some(motion) if matches!(motion.value, Motion::Fixed));
-        axes.clone().all(fixed) && support.on.within.is_none()
+        axes.clone().all(fixed)
     })?;
-    let group = held.on.group.as_ref()?;
-    let held = mesh.group_nodes(&group.value);
+    let (name, place, held) = (named(&held.on), held.on.place()?, nodes_of(mesh, &held.on)?);
     let middle = loaded.iter().map(|&node| mesh.nodes[node as usize]).sum::<Vec3>() / loaded.len().max(1) as f64;
     let away = held.iter().map(|&node| (mesh.nodes[node as usize] - middle).norm()).fold(f64::INFINITY, f64::min);
     let fastest = bodies.iter().map(|body| wave_speed(case, body)).fold(0.0, f64::max);
@@ -251,11 +250,7 @@ fn reflected(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     if back >= case.solver.end || held.len() < 3 {
         return None;
     }
-    let found = format!(
-        "= \"{}\": it is held, and sends back the wave of the pulse from t = {}",
-        group.value,
-        quantity(back, "s")
-    );
-    let note = Diagnostic::warning(Code::Reflections, &group.place, found);
+    let found = format!("{name}: it is held, and sends back the wave of the pulse from t = {}", quantity(back, "s"));
+    let note = Diagnostic::warning(Code::Reflections, place, found);
     Some(note.remedy("let waves leave there by absorbing = true, unless the body ends there"))
 }

@@ -127,6 +127,8 @@ struct Context<'a> {
     /// Where particles of bodies come into the run.
     inlets: Vec<Inlet>,
     weibull: Vec<WeibullReport>,
+    /// Displacements of the far field of an in-situ stress, from which supports hold their nodes [m].
+    held_by_far_field: Option<Vec<Vec3>>,
     diagnostics: Vec<Diagnostic>,
 }
 
@@ -144,6 +146,7 @@ pub fn check_before_particles(case: &Case, mesh: &Mesh) -> Result<(), Diagnostic
         flat_faces: Vec::new(),
         inlets: Vec::new(),
         weibull: Vec::new(),
+        held_by_far_field: None,
         diagnostics: Vec::new(),
     };
     precheck::check_before_particles(&mut context);
@@ -181,8 +184,18 @@ pub fn build_shared_scene(
     // The equilibrium with which in-situ stress begins is found by every rank, and bodies leave as wholes.
     let exchange = exchange.filter(|_| case.in_situ.is_none() && !case.excavates());
     let (particle_sets, flat_faces, inlets, weibull, diagnostics) = Default::default();
-    let mut context =
-        Context { case, mesh, exchange, division, particle_sets, flat_faces, inlets, weibull, diagnostics };
+    let mut context = Context {
+        case,
+        mesh,
+        exchange,
+        division,
+        particle_sets,
+        flat_faces,
+        inlets,
+        weibull,
+        held_by_far_field: None,
+        diagnostics,
+    };
     precheck::check_before_particles(&mut context);
     let built = context.build(prepared, facets);
     match built {
@@ -382,12 +395,21 @@ impl<'a> Context<'a> {
                 scene.contacts.watch(contact);
             }
         }
+        if let Some(far) = self.held_by_far_field.take() {
+            let solid = &mut scene.solid;
+            for node in 0..solid.displacement.len() {
+                solid.displacement[node] = far[solid.original(node)];
+            }
+        }
         // Later stages begin with the state of those before.
         if let Some(stress) = self.case.in_situ.as_ref().filter(|_| self.case.is_first_stage())
             && let Err(error) = scene.start_at_rest()
         {
             self.error(&stress.place.clone(), format!(": {error}"), "");
             return None;
+        }
+        if self.exchange.is_none() && self.case.is_first_stage() {
+            warnings.extend(in_situ::shared(self.case, &scene.solid));
         }
         if !matches!(self.case.solver.kind, SolverKind::Static | SolverKind::Heat | SolverKind::Modes) {
             precheck::check_time_step(self, &scene, warnings);

@@ -9,7 +9,7 @@ use fractum_mesh::{Group, Mesh};
 use fractum_output::number::{grouped, percent, quantity};
 use fractum_output::warning::Code;
 
-use super::body_doubts::{Own, extent, moved_as_a_whole, pieces, pushed_away, thin, unheld};
+use super::body_doubts::{Own, extent, moved_as_a_whole, nodes_of, pieces, pushed_away, thin, unheld};
 use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, tables_in_vain, taken_at_once, unmoved};
 use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
@@ -297,7 +297,7 @@ fn leaps(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic
             match &motion.value {
                 Motion::Displacement(function) => doubts.extend(leap([begin, case.solver.end], motion, function)),
                 Motion::Velocity(function) if !function.depends_on_position() => {
-                    let nodes = support.on.group.as_ref().map(|group| mesh.group_nodes(&group.value));
+                    let nodes = nodes_of(mesh, &support.on);
                     let strikes = |body: &&Own| {
                         let meets = |node: &u32| body.nodes.binary_search(node).is_ok();
                         let rests = body.solid.initial_velocity[axis].is_none();

@@ -151,6 +151,87 @@ fn a_bent_body_is_told_what_its_elements_take_of_its_deflection() {
     }
 }
 
+/// A body is bent by supports and loads that are chosen by their place, by rollers, by heat on one side and by its own vibrations; not where a
+/// whole side lies on a support, or where both sides are heated.
+#[test]
+fn what_bends_a_body_is_seen_however_it_is_written() {
+    const HEAD: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[materials.rock]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[materials.rock.thermal]
+conductivity = "2 W/(m K)"
+heat_capacity = "900 J/(kg K)"
+expansion = "1e-5 1/K"
+[[bodies]]
+name = "bar"
+kind = "solid"
+group = "body"
+material = "rock"
+plane = "stress"
+thickness = "50 mm"
+"#;
+    let solver = |kind: &str| match kind {
+        "modes" => "[solver]\nkind = \"modes\"\n".to_owned(),
+        kind => format!("[solver]\nkind = \"{kind}\"\nend = \"1 s\"\n"),
+    };
+    let held = "[[supports]]\nwhere = \"x < 1 mm\"\nfix = \"xy\"\n";
+    let foot = "[[supports]]\nwhere = \"x < 1 mm && y < 1 mm\"\nfix = \"xy\"\n[[supports]]\nwhere = \"x > 399 mm && y < 1 mm\"\nfix = \"y\"\n";
+    let load = "[[loads]]\nwhere = \"x > 399 mm\"\nforce = { y = \"-100 N\" }\n";
+    let lies = "[[supports]]\nwhere = \"y < 1 mm\"\nfix = \"xy\"\n";
+    let roller = |x: f64, y: f64, moves: &str| {
+        format!(
+            "[[bodies]]\nname = \"roller{x}\"\nkind = \"rigid\"\nshape = \"cylinder\"\naxis = \"z\"\nlength = 0.2\nradius = 0.01\npoint = [{x}, {y}, -0.1]\n{moves}"
+        )
+    };
+    let rollers =
+        [roller(0.02, -0.01, ""), roller(0.38, -0.01, ""), roller(0.2, 0.06, "velocity = { y = \"-1 um/s\" }\n")];
+    let rollers =
+        format!("{}[[supports]]\nwhere = \"abs(x - 0.2) < 1e-3 && y < 1 mm\"\nfix = \"x\"\n", rollers.concat());
+    let heated = |side: &str| format!("[[heat.conditions]]\nwhere = \"{side}\"\ntemperature = \"300 K + 10 K/s*t\"\n");
+    let heat = "[heat]\ninitial_temperature = \"300 K\"\n";
+    let graded = "[[heat.conditions]]\nwhere = \"x >= 0\"\ntemperature = \"300 K + 10 K/s*t*y/50 mm\"\n";
+    let cases = [
+        (format!("{held}{load}"), "static", true),
+        (format!("{lies}{load}"), "static", false),
+        (held.to_owned(), "modes", true),
+        (String::new(), "modes", true),
+        (lies.to_owned(), "modes", false),
+        (rollers, "static", true),
+        (format!("{foot}{heat}{}", heated("y > 49 mm")), "static", true),
+        (format!("{foot}{heat}{graded}"), "static", true),
+        (format!("{foot}{heat}{}{}", heated("y > 49 mm"), heated("y < 1 mm")), "static", false),
+    ];
+    let mesh = structured_rectangle([32, 4], [0.4, 0.05], None);
+    for (scene, kind, bends) in cases {
+        let all = said_of(&format!("{HEAD}{scene}{}", solver(kind)), &mesh);
+        assert_eq!(all.iter().any(|text| text.ends_with("[thin-mesh]")), bends, "{scene}: {all:?}");
+    }
+}
+
+/// Supports and loads by their place are doubted as those by a group are.
+#[test]
+fn what_is_chosen_by_its_place_is_doubted_too() {
+    let mesh = structured_box([8, 3, 3], Vec3::new(0.4, 0.12, 0.12), None);
+    let scene = |rest: &str| {
+        let start = BAR.find("[[supports]]").unwrap();
+        let bar = BAR[..start].replace("[materials.concrete.damage]", "[materials.concrete.thermal]");
+        let bar = bar.replace("tensile_strength = \"3 MPa\"", "conductivity = 2");
+        let bar = bar.replace("fracture_energy = \"100 J/m^2\"", "heat_capacity = 900");
+        said_of(&format!("{bar}{rest}"), &mesh)
+    };
+    let one = "[[supports]]\nPLACE\ndisplacement = { x = \"0.1 mm * t / 10 ms\" }\n[solver]\nend = \"10 ms\"\n";
+    let pulse = "[[supports]]\nPLACE\nfix = \"xyz\"\n[[loads]]\nwhere = \"x > 399 mm\"\npressure = { pulse = \"half-sine\", peak = \"1 MPa\", duration = \"0.4 ms\" }\n[solver]\nend = \"2 ms\"\n";
+    for (text, code) in [(one, "[unheld]"), (pulse, "[reflections]")] {
+        for place in ["group = \"x-\"", "where = \"x < 1 mm\""] {
+            let all = scene(&text.replace("PLACE", place));
+            assert!(all.iter().any(|text| text.ends_with(code)), "{place}: {all:?}");
+        }
+    }
+}
+
 #[test]
 fn a_wrong_unit_is_told_with_its_line_and_the_likely_one() {
     assert_eq!(said("fractum = 1", "fractum = 1", 0.4, 0.0), [""; 0]);

@@ -310,14 +310,13 @@ impl Contacts {
         self.rayleigh_frequency * self.rayleigh_frequency + self.flat.frequency_square + self.nodes.frequency_square
     }
 
-    /// Energy of the mean particle at the speed of the fastest rigid body [J]: what the first touch is about.
+    /// Energy of the mean particle at the speed of the fastest place of the rigid bodies [J]: what the first touch is about.
     pub(crate) fn touch_energy(&self, particles: &Particles) -> f64 {
-        let fastest =
-            self.rigid_bodies.iter().map(|rigid_body| rigid_body.frame.velocity.norm_squared()).fold(0.0, f64::max);
+        let fastest = self.rigid_bodies.iter().map(RigidBody::speed).fold(0.0, f64::max);
         if fastest == 0.0 || particles.is_empty() {
             return 0.0;
         }
-        0.5 * fastest * particles.mass.iter().sum::<f64>() / particles.len() as f64
+        0.5 * fastest * fastest * particles.mass.iter().sum::<f64>() / particles.len() as f64
     }
 
     /// Contacts at the last step.

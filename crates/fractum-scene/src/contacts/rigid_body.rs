@@ -28,6 +28,23 @@ pub enum Form {
     },
 }
 
+impl Form {
+    /// Distance of the farthest point from the reference point [m]; 0 of planes.
+    fn reach(&self) -> f64 {
+        match self {
+            Form::Shape { shape, .. } => match *shape {
+                Shape::HalfSpace => 0.0,
+                Shape::Cuboid { half } => half.norm(),
+                Shape::Cylinder { radius, half_length } | Shape::Tube { radius, half_length } => {
+                    (radius * radius + half_length * half_length).sqrt()
+                }
+                Shape::Ball { radius } => radius,
+            },
+            Form::Mesh { points, .. } => points.iter().map(|point| point.norm()).fold(0.0, f64::max),
+        }
+    }
+}
+
 /// How a rigid body moves along or about one axis of space.
 #[derive(Clone)]
 pub enum Drive {
@@ -74,6 +91,8 @@ pub struct RigidBody {
     /// Mass, where some axis is free.
     pub inertia: Option<Inertia>,
     start: Vec3,
+    /// Distance of its farthest point from the reference point [m]; 0 of planes.
+    reach: f64,
     /// Angular momentum at the half step [kg m²/s].
     angular_momentum: Vec3,
     force: Vec3,
@@ -106,9 +125,11 @@ pub(super) struct RigidBodyState {
 impl RigidBody {
     /// A rigid body at rest whose axes are fixed; its reference point is the origin of `frame`.
     pub fn new(name: &str, form: Form, frame: Frame, elastic: ElasticMaterial, surface: ContactParameters) -> Self {
+        let reach = form.reach();
         RigidBody {
             name: name.to_owned(),
             form,
+            reach,
             elastic,
             surface,
             work_of_adhesion: 0.0,
@@ -183,6 +204,11 @@ impl RigidBody {
     /// Way of its reference point since the start [m].
     pub fn displacement(&self) -> Vec3 {
         self.frame.origin - self.start
+    }
+
+    /// Largest speed of its points [m/s], at most.
+    pub(super) fn speed(&self) -> f64 {
+        self.frame.velocity.norm() + self.frame.spin.norm() * self.reach
     }
 
     /// Whether something moves it, or could.

@@ -45,13 +45,20 @@ fn slope(times: &[f64], values: &[f64], rows: &[usize]) -> f64 {
     slope / weight
 }
 
-/// Value at a time, linear between rows.
+/// Value at a time, by a straight line between rows: where the time is first passed, since it also goes back along a path of equilibrium. Not a
+/// number where the run has not come so far.
 pub(crate) fn interpolate(times: &[f64], values: &[f64], time: f64) -> f64 {
-    let next = times.partition_point(|&t| t <= time);
-    match (next.checked_sub(1), values.get(next)) {
-        (Some(i), Some(after)) => values[i] + (after - values[i]) * (time - times[i]) / (times[next] - times[i]),
-        (Some(i), None) => values[i],
-        (None, _) => values.first().copied().unwrap_or(f64::NAN),
+    match times.iter().position(|&t| t > time) {
+        Some(0) => values[0],
+        Some(next) => {
+            let [before, after] = [next - 1, next];
+            let share = (time - times[before]) / (times[after] - times[before]);
+            values[before] + (values[after] - values[before]) * share
+        }
+        None => {
+            let last = times.iter().position(|&t| t >= time * (1.0 - 1e-9));
+            last.map_or(f64::NAN, |row| values[row])
+        }
     }
 }
 
@@ -73,6 +80,13 @@ mod tests {
     fn the_largest_value_is_found_behind_rows_without_one() {
         assert_eq!(index_of_max(&[f64::NAN, 1.0, 3.0, f64::NAN, 3.0]), Some(2));
         assert_eq!(index_of_max(&[f64::NAN, f64::NAN]), None);
+    }
+
+    #[test]
+    fn a_value_at_a_time_is_that_of_its_first_passage_and_none_beyond_the_run() {
+        let (times, values) = ([0.0, 1.0, 2.0, 1.5, 1.0], [0.0, 10.0, 30.0, 5.0, 1.0]);
+        assert_eq!([0.5, 1.5, 2.0].map(|time| interpolate(&times, &values, time)), [5.0, 20.0, 30.0]);
+        assert!(interpolate(&times, &values, 2.1).is_nan() && interpolate(&[], &[], 0.0).is_nan());
     }
 
     #[test]

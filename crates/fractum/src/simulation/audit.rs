@@ -424,7 +424,7 @@ fn undefined_probes(case: &Case, recorder: &Recorder) -> Vec<Warning> {
                 "it had no value at any instant: what it looks at was never there, such as a crack of enough bonds"
             }
             (true, true) => {
-                "it had no value at any instant, as 0/0, the root of a negative number, or a slope over too few instants"
+                "it had no value at any instant, as 0/0, the root of a negative number, a slope over too few instants, or at() a time after the end"
             }
             (true, false) => "it is infinite at an instant: something is divided by zero",
         };
@@ -552,7 +552,7 @@ fn warning(scene: &Scene, Noticed { what, site, time, value }: &Noticed, at_rest
                 "the overlap is {} of the smaller radius, and the law of contact is for small ones",
                 percent(*value)
             ),
-            "particles may pass through each other: press or hit them less, or make them stiffer (contact_modulus)",
+            "particles may pass through each other: press or hit them less, or make them stiffer (contact.young_modulus of their material)",
         ),
     };
     Warning::new(code, place, text).remedy(remedy)
