@@ -19,6 +19,7 @@ mod laws;
 mod leaving;
 mod liquid;
 mod meeting;
+mod meeting_plane;
 mod modes;
 mod phase_field;
 mod plane;

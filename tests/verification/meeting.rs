@@ -133,7 +133,7 @@ pub(crate) fn crash(target: Target, (beads, rate): (usize, f64)) -> Scene {
 }
 
 /// Linear and angular momentum.
-fn momenta(scene: &Scene) -> (Vec3, Vec3) {
+pub(crate) fn momenta(scene: &Scene) -> (Vec3, Vec3) {
     let along = |of: fn(&Scene, &Vec3) -> f64| Vec3::from_fn(|k, _| of(scene, &Vec3::ith(k, 1.0)));
     (along(Scene::momentum_along), along(Scene::angular_momentum_along))
 }
@@ -360,7 +360,7 @@ fn crossed_bars_have_the_same_bits_on_any_number_of_ranks_and_threads_and_after_
 }
 
 /// Force of contact on a body from another [N].
-fn between(scene: &Scene, on: ContactBody, from: ContactBody) -> Vec3 {
+pub(crate) fn between(scene: &Scene, on: ContactBody, from: ContactBody) -> Vec3 {
     let force = |axis| {
         let along = Along::Direction(Vec3::ith(axis, 1.0));
         scene.contacts.force_between(&ContactProbe { on, from, along }).unwrap()

@@ -34,6 +34,8 @@ pub struct SurfaceContacts<L: ContactLaw> {
     tree: Option<Bvh>,
     /// How far within the ground a centre still counts [m]; none where a surface has no inside.
     depth: Option<f64>,
+    /// Normals at points that are corners of plane bodies; empty where there are none.
+    corners: Vec<Option<[Vec3; 2]>>,
 }
 
 impl<L: ContactLaw> SurfaceContacts<L> {
@@ -49,6 +51,7 @@ impl<L: ContactLaw> SurfaceContacts<L> {
             points_at: Vec::new(),
             tree: None,
             depth: None,
+            corners: Vec::new(),
         }
     }
 
@@ -72,6 +75,18 @@ impl<L: ContactLaw> SurfaceContacts<L> {
             self.renew(ground, spheres);
         }
         is_due
+    }
+
+    /// Says how the points near the ground are corners of plane bodies, which meet lines that they face; after a
+    /// [`search`](SurfaceContacts::search).
+    ///
+    /// - `count`: number of spheres
+    /// - `normals`: unit normals out of the lines before and after a point, counter-clockwise around its body; none of other spheres
+    pub fn set_corners(&mut self, count: usize, normals: impl Fn(u32) -> Option<[Vec3; 2]>) {
+        self.corners.resize(count, None);
+        for &point in self.blocks.iter().flat_map(|block| &block.spheres) {
+            self.corners[point as usize] = normals(point);
+        }
     }
 
     /// Whether the skin is used up, by the way of some of the spheres and that of the ground.
@@ -162,7 +177,7 @@ impl<L: ContactLaw> SurfaceContacts<L> {
     /// - `law`: law of a sphere on this ground, where its mean curvature is the second argument [1/m]
     /// - `dt` [s]: the step that led here
     pub fn update(&mut self, ground: &Surface, spheres: &Spheres, law: impl Fn(u32, f64) -> L + Sync, dt: f64) -> Work {
-        let (depth, reach) = (self.depth, self.reach);
+        let (depth, reach) = ((self.depth, self.corners.as_slice()), self.reach);
         self.blocks.par_iter_mut().for_each(|block| block.update(ground, spheres, depth, reach, &law, dt));
         let mut work = Work::default();
         for block in &self.blocks {
@@ -185,7 +200,7 @@ impl<L: ContactLaw> SurfaceContacts<L> {
         spheres: &Spheres,
         grown: impl Fn(u32) -> Option<f64> + Sync,
     ) {
-        let depth = self.depth;
+        let depth = (self.depth, self.corners.as_slice());
         self.blocks.par_iter_mut().for_each(|block| block.accept_initial_overlap(ground, spheres, depth, &grown));
     }
 
@@ -202,6 +217,11 @@ impl<L: ContactLaw> SurfaceContacts<L> {
     /// Spheres near the ground, ascending: all that can touch before the next search.
     pub fn near(&self) -> impl Iterator<Item = u32> {
         self.blocks.iter().flat_map(|block| block.spheres.iter().copied())
+    }
+
+    /// Corners that the ground was as near to at the last update as its depth, on either side.
+    pub fn close_corners(&self) -> impl Iterator<Item = u32> {
+        self.blocks.iter().flat_map(|block| block.close.iter().copied())
     }
 
     /// Contacts of the last update, in the order of the spheres.

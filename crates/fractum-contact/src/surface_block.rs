@@ -7,12 +7,15 @@ use fractum_math::{Vec3, Work};
 
 use crate::foot::Foot;
 use crate::hierarchy::DoubleHierarchy;
-use crate::inside::foot_from_inside;
+use crate::inside::{foot_from_inside, foot_of_corner};
 use crate::surface::FacetMesh;
 use crate::touch::{Spheres, Surface, Touch};
 
 /// Cosine of the angle between the normals of two steps beyond which a contact is a new one.
 const SAME_CONTACT: f64 = 0.5;
+
+/// Unit normals out of both lines at each point that is a corner of a plane body; none of other spheres.
+pub(crate) type Corners = [Option<[Vec3; 2]>];
 
 /// Some spheres near the ground.
 #[derive(Clone, Debug)]
@@ -29,6 +32,8 @@ pub(crate) struct Block<L: ContactLaw> {
     origin: Vec<Option<usize>>,
     /// Whether each contact of the last step goes on.
     taken: Vec<bool>,
+    /// Corners that the ground is as near to as its depth.
+    pub(crate) close: Vec<u32>,
     pub(crate) ended: Work,
 }
 
@@ -44,6 +49,7 @@ impl<L: ContactLaw> Block<L> {
             feet: Vec::new(),
             origin: Vec::new(),
             taken: Vec::new(),
+            close: Vec::new(),
             ended: Work::default(),
         }
     }
@@ -52,13 +58,14 @@ impl<L: ContactLaw> Block<L> {
         &mut self,
         ground: &Surface,
         spheres: &Spheres,
-        depth: Option<f64>,
+        (depth, corners): (Option<f64>, &Corners),
         reach: f64,
         law: &(impl Fn(u32, f64) -> L + Sync),
         dt: f64,
     ) {
         std::mem::swap(&mut self.touches, &mut self.before);
         self.touches.clear();
+        self.close.clear();
         self.ended = Work::default();
         let mut next_old = 0;
         for k in 0..self.spheres.len() {
@@ -71,7 +78,10 @@ impl<L: ContactLaw> Block<L> {
             let old = first_old..next_old;
             let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
             let farthest = radius + reach;
-            find_feet(ground, facets, centre, farthest, depth, &mut self.hierarchy, &mut self.feet);
+            let corner = corner_of(corners, sphere, radius);
+            if find_feet(ground, facets, centre, farthest, (depth, corner), &mut self.hierarchy, &mut self.feet) {
+                self.close.push(sphere);
+            }
             if reach > 0.0 {
                 self.feet.retain(|foot| foot.distance < radius + law(sphere, foot.curvature).reach());
             }
@@ -82,10 +92,11 @@ impl<L: ContactLaw> Block<L> {
             // A sphere that was taken as it stood, deep within an edge, may leave on the other side: what gives no force is its own.
             let overlap_offset =
                 self.before[old.clone()].iter().map(|t| L::overlap_offset(&t.memory)).fold(0.0, f64::max);
-            self.add_touches(ground, spheres, law, dt, (sphere, overlap_offset));
+            let comes = corner.is_some() && old.is_empty();
+            self.add_touches(ground, spheres, law, dt, (sphere, overlap_offset, comes));
             for touch in self.before[old.clone()].iter().zip(&self.taken).filter(|(_, taken)| !**taken).map(|(t, _)| t)
             {
-                self.ended += ending(touch, law(sphere, 0.0), ground, spheres, dt);
+                self.ended += ending(touch, law(sphere, 0.0), ground, spheres, (dt, corner.is_some()));
             }
         }
     }
@@ -137,21 +148,19 @@ impl<L: ContactLaw> Block<L> {
         }
     }
 
-    /// Forces of the feet of one sphere, with what contacts that continue none start with.
+    /// Forces of the feet of one sphere, with what contacts that continue none start with, and whether it is a corner that touched nothing here: one
+    /// that came from beside the end of a line was within already, which gives no force.
     fn add_touches(
         &mut self,
         ground: &Surface,
         spheres: &Spheres,
         law: &(impl Fn(u32, f64) -> L + Sync),
         dt: f64,
-        (sphere, overlap_offset): (u32, f64),
+        (sphere, overlap_offset, comes): (u32, f64, bool),
     ) {
         let i = sphere as usize;
         for (foot, origin) in self.feet.iter().zip(&self.origin) {
             let mut memory = origin.map_or_else(Default::default, |k| self.before[k].memory);
-            if origin.is_none() {
-                L::add_overlap_offset(&mut memory, overlap_offset);
-            }
             let place = spheres.position[i] + foot.offset;
             let (ground_velocity, ground_spin) = ground.motion_at(foot.feature, &place);
             let overlap = spheres.radius[i] - foot.distance;
@@ -161,6 +170,10 @@ impl<L: ContactLaw> Block<L> {
                 let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&foot.offset);
                 (velocity, ground_spin - spheres.spin[i])
             };
+            if origin.is_none() {
+                let within = if comes && dt > 0.0 { overlap + velocity.dot(&foot.normal) * dt } else { 0.0 };
+                L::add_overlap_offset(&mut memory, overlap_offset.max(within));
+            }
             let motion = PairMotion { normal: foot.normal, overlap, velocity, spin, dt };
             let force = law(sphere, foot.curvature).force(&motion, &mut memory);
             let moment = -foot.offset.cross(&force.on_second) - force.couple_on_second;
@@ -207,7 +220,7 @@ impl<L: ContactLaw> Block<L> {
         &mut self,
         ground: &Surface,
         spheres: &Spheres,
-        depth: Option<f64>,
+        (depth, corners): (Option<f64>, &Corners),
         grown: &impl Fn(u32) -> Option<f64>,
     ) {
         std::mem::swap(&mut self.touches, &mut self.before);
@@ -227,7 +240,8 @@ impl<L: ContactLaw> Block<L> {
             }
             let (centre, radius) = (&spheres.position[sphere as usize], spheres.radius[sphere as usize]);
             let facets = &self.facets[self.starts[k] as usize..self.starts[k + 1] as usize];
-            find_feet(ground, facets, centre, radius, depth, &mut self.hierarchy, &mut self.feet);
+            let corner = corner_of(corners, sphere, radius);
+            find_feet(ground, facets, centre, radius, (depth, corner), &mut self.hierarchy, &mut self.feet);
             for foot in &self.feet {
                 if foot.elastic || self.touches[first..].iter().any(|t| t.feature == foot.feature) {
                     continue;
@@ -241,40 +255,68 @@ impl<L: ContactLaw> Block<L> {
     }
 }
 
+/// The normals at a sphere that is a corner, as long as it has no size of its own.
+fn corner_of(corners: &Corners, sphere: u32, radius: f64) -> Option<&[Vec3; 2]> {
+    corners.get(sphere as usize).filter(|_| radius == 0.0)?.as_ref()
+}
+
 /// What is left of a contact that ended in the step to here: its springs relax, and its forces act once more over half of that step.
-fn ending<L: ContactLaw>(touch: &Touch<L::Memory>, law: L, ground: &Surface, spheres: &Spheres, dt: f64) -> Work {
+///
+/// - `is_corner`: one that was deeper than it can leave in a step has slid off the end of a line; what its spring still held is lost as damping
+fn ending<L: ContactLaw>(
+    touch: &Touch<L::Memory>,
+    law: L,
+    ground: &Surface,
+    spheres: &Spheres,
+    (dt, is_corner): (f64, bool),
+) -> Work {
     let (mut memory, i) = (touch.memory, touch.sphere as usize);
     let (ground_velocity, ground_spin) = ground.motion_at(touch.feature, &(spheres.position[i] + touch.offset));
     let velocity = ground_velocity - spheres.velocity[i] - spheres.spin[i].cross(&touch.offset);
     let spin = ground_spin - spheres.spin[i];
     let motion = PairMotion { normal: touch.normal, overlap: -law.reach(), velocity, spin, dt };
     let force = law.force(&motion, &mut memory);
+    let overlap = touch.overlap - L::overlap_offset(&touch.memory);
+    if is_corner && overlap > velocity.dot(&touch.normal).abs() * dt {
+        let given = -0.5 * dt * touch.force.dot(&velocity);
+        return Work::contact(0.0, force.friction, touch.stored - given - force.friction);
+    }
     Work::contact(0.0, force.friction * touch.weight, force.damping * touch.weight)
 }
 
-/// Feet of a sphere, in space.
+/// Feet of a sphere, in space; whether it is a corner that the ground is close to.
 fn find_feet(
     ground: &Surface,
     facets: &[u32],
     centre: &Vec3,
     radius: f64,
-    depth: Option<f64>,
+    (depth, corner): (Option<f64>, Option<&[Vec3; 2]>),
     hierarchy: &mut DoubleHierarchy,
     feet: &mut Vec<Foot>,
-) {
-    let mut on_facets = |surface: &FacetMesh, points: &[Vec3], centre: &Vec3, feet: &mut Vec<Foot>| match depth
-        .and_then(|depth| foot_from_inside(surface, points, facets, centre, depth))
-    {
-        Some(foot) => {
-            feet.clear();
-            feet.push(foot);
+) -> bool {
+    let mut is_close = false;
+    let mut on_facets = |surface: &FacetMesh, points: &[Vec3], centre: &Vec3, feet: &mut Vec<Foot>| {
+        let inside = match (depth, corner) {
+            (Some(depth), Some(corner)) => {
+                let (foot, close) = foot_of_corner(surface, points, facets, centre, depth, corner);
+                is_close = close;
+                foot
+            }
+            (Some(depth), None) => foot_from_inside(surface, points, facets, centre, depth),
+            (None, _) => None,
+        };
+        match inside {
+            Some(foot) => {
+                feet.clear();
+                feet.push(foot);
+            }
+            None => hierarchy.feet(surface, points, facets, centre, radius, feet),
         }
-        None => hierarchy.feet(surface, points, facets, centre, radius, feet),
     };
     let frame = match ground {
         Surface::Deformable { surface, points, .. } => {
             on_facets(surface, points, centre, feet);
-            return;
+            return is_close;
         }
         Surface::Rigid { surface, points, frame } => {
             on_facets(surface, points, &frame.to_body(centre), feet);
@@ -289,4 +331,5 @@ fn find_feet(
         foot.offset = frame.to_space(&foot.offset);
         foot.normal = frame.to_space(&foot.normal);
     }
+    false
 }

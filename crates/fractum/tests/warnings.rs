@@ -281,7 +281,14 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         checked("unequal-plates", halves(plate(), false), &[(support, &second(unequal))]),
         checked("unequal-plates", halves(plate(), false), &[(support, &second("plane = \"stress\"\n"))]),
         checked("coincident-nodes", halves(bar(), true), &[(support, &second(""))]),
-        checked("no-contact", away(halves(plate(), true)), &[(support, &second(""))]),
+        checked(
+            "no-contact",
+            away(halves(plate(), true)),
+            &[
+                ("material = \"stone\"\n[[supports]]", "material = \"stone\"\nplane = \"axisymmetric\"\n[[supports]]"),
+                (support, &second("plane = \"axisymmetric\"\n")),
+            ],
+        ),
         checked("unheld", bar(), &[("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", ""), (end, "end = \"4 ms\"")]),
         checked(
             "unheld",

@@ -35,7 +35,8 @@ pub struct PreparedFacets {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Outward facets of each solid body, in scene nodes; of plane bodies the edges that discs touch, which repeat their second node.
+/// Outward facets of each solid body, in scene nodes; of plane bodies, where discs or other solids may touch them, the edges, which repeat
+/// their second node.
 pub(super) fn facets_of_parts(context: &Context<'_>, parts: &[Part], numbering: &Numbering) -> Vec<Vec<[u32; 3]>> {
     let scene = |n: u32| numbering.scene_node[n as usize];
     if let Some(division) = context.division {
@@ -44,7 +45,7 @@ pub(super) fn facets_of_parts(context: &Context<'_>, parts: &[Part], numbering: 
     }
     let has_discs = context.case.has_discs();
     let of = |part: &Part| match part.shape {
-        fem::ElementKind::T3 if !has_discs => Vec::new(),
+        fem::ElementKind::T3 if part.body.is_axisymmetric() || !has_discs && parts.len() == 1 => Vec::new(),
         fem::ElementKind::T3 => {
             let triangles = super::bodies::element_nodes(context, part).into_iter().map(|[a, b, c, _]| [a, b, c]);
             let edges = topology::boundary_of_triangles(&triangles.collect::<Vec<_>>());

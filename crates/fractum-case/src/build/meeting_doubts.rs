@@ -15,7 +15,7 @@ use crate::{Diagnostic, Place};
 /// Instants at which the motion of a tool is looked at.
 const LOOKS: u32 = 1000;
 
-/// Plane solids that could meet, and pass through each other.
+/// Spheres that could meet plane solids, and solids about an axis that could meet each other: they pass through each other.
 pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
     if case.solver.kind != SolverKind::Explicit || !bodies.iter().any(|body| body.plane) {
         return None;
@@ -33,12 +33,20 @@ pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
         let note = Diagnostic::warning(Code::NoContact, &name.place, found);
         return Some(note.remedy("set thickness on loose particles, which makes discs of them; or make the solid rigid, or model it in space"));
     }
+    if !bodies.iter().any(|body| body.solid.is_axisymmetric()) {
+        return None;
+    }
     let pieces = pieces(mesh, bodies);
     let other = pieces.iter().position(|piece| *piece != 0)?;
     let [first, second] = [&bodies[0], &bodies[other]].map(|body| &body.name.value);
-    let found = format!("= \"{second}\": it has no nodes in common with \"{first}\", and plane solids do not touch");
+    let found =
+        format!("= \"{second}\": it has no nodes in common with \"{first}\", and solids about an axis do not touch");
     let note = Diagnostic::warning(Code::NoContact, &bodies[other].name.place, found);
-    Some(note.remedy("they pass through each other where they meet: make one of them rigid, or model both in space"))
+    Some(
+        note.remedy(
+            "they pass through each other where they meet: mesh both with common nodes, or make one of them rigid",
+        ),
+    )
 }
 
 /// Bodies whose nodes lie in the same places without being the same, where nothing makes them touch.
@@ -46,7 +54,7 @@ pub(super) fn coincident(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagno
     if bodies.len() < 2 {
         return Vec::new();
     }
-    let touches = case.solver.kind == SolverKind::Explicit && !bodies.iter().any(|body| body.plane);
+    let touches = case.solver.kind == SolverKind::Explicit && !bodies.iter().any(|body| body.solid.is_axisymmetric());
     // Who says how bodies touch means that they do.
     let says_how = |body: &Own| body.solid.surface(&case.materials) != ContactParameters::default();
     let sets: Vec<&[u32]> = bodies.iter().map(|body| body.nodes.as_slice()).collect();
@@ -169,7 +177,8 @@ pub(super) fn undamped(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnost
     let is_driven = case.bodies.iter().any(|body| matches!(body.kind, BodyKind::Rigid(_)));
     // Meshes that a command makes may not be there yet.
     let there = bodies.iter().all(|body| !body.nodes.is_empty());
-    let alone = bodies.iter().all(|body| body.plane) || (there && pieces(mesh, bodies).iter().all(|piece| *piece == 0));
+    let alone = bodies.iter().all(|body| body.solid.is_axisymmetric())
+        || (there && pieces(mesh, bodies).iter().all(|piece| *piece == 0));
     if !moves || !is_driven || !alone || case.solver.subcycling.is_some() || !case.bodies.iter().all(held) {
         return Vec::new();
     }

@@ -6,7 +6,7 @@ mod weights;
 use fractum_math::{Ragged, Vec3, numbered_parts};
 
 use crate::SurfaceError;
-pub(crate) use closest::area_vector;
+use closest::area_vector;
 pub(crate) use closest::closest_on_segment;
 use closest::{Place, closest_on_line, closest_on_polygon, closest_on_triangle};
 
@@ -207,6 +207,16 @@ impl FacetMesh {
     /// Feature number of a point.
     pub(crate) fn point_feature(&self, point: u32) -> u32 {
         (self.facets.len() + self.edges.len()) as u32 + point
+    }
+
+    /// Unit normal of a facet: outward where its corners run counter-clockwise seen from outside, to the right of the way along a line.
+    pub(crate) fn normal(&self, facet: u32, points: &[Vec3]) -> Vec3 {
+        let corners = self.corners(facet);
+        if let &[a, b] = corners {
+            let way = points[b as usize] - points[a as usize];
+            return Vec3::new(way.y, -way.x, 0.0).normalize();
+        }
+        area_vector(corners, points).normalize()
     }
 
     /// Closest place of a facet to `x`: its feature and the vector from `x` to it.

@@ -273,7 +273,8 @@ impl EdgeContacts {
         let ends = a.nodes.iter().map(|n| (*n, b.ground)).chain(b.nodes.iter().map(|n| (*n, a.ground)));
         let smaller = |x: (u32, usize), y: (u32, usize)| if debris.radius(y.0) < debris.radius(x.0) { y } else { x };
         let (node, other) = ends.reduce(smaller).unwrap_or((a.nodes[0], b.ground));
-        let law = debris.facet_law(node, 1.0 / mobility, solids[other].elastic(), solids[other].body_and_surface());
+        let law =
+            debris.facet_law(node, 1.0 / mobility, (solids[other].elastic(), 0.0), solids[other].body_and_surface());
         (Linear { rolling: Rolling::default(), ..law }, mobility)
     }
 

@@ -1,6 +1,8 @@
 //! What nodes of solids meet beside the nodes of their own kind: facets of rigid bodies and of other solids, containers, and
 //! particles with nodes of their own.
 
+use std::collections::BTreeMap;
+
 use fractum_contact::law::ContactMemory;
 use fractum_contact::{Spheres, Touch};
 use fractum_dem::Particles;
@@ -70,7 +72,7 @@ impl NodeContacts {
 }
 
 impl Contacts {
-    /// Has the nodes of solids meet what there is; of plane ones the discrete elements meet discs, and nothing else does.
+    /// Has the nodes of solids meet what there is; those of plane ones meet each other's lines, and their discrete elements discs too.
     ///
     /// - `surface`: nodes on the surfaces of the solids, ascending
     /// - `joined`: bodies that interfaces join
@@ -82,20 +84,18 @@ impl Contacts {
         surface: &[u32],
         joined: &[[u32; 2]],
     ) {
-        if solid.body_count() == 0 || solid.is_plane() && particles.thickness.is_none() {
+        let is_plane = solid.is_plane();
+        if solid.body_count() == 0 || is_plane && particles.thickness.is_none() && self.solids.is_empty() {
             return;
         }
         if !particles.is_empty() {
             let smallest = particles.radius.iter().map(|radius| radius.abs()).fold(f64::INFINITY, f64::min);
             self.nodes.debris = Some(DebrisAmong::new(SKIN * smallest));
         }
-        if solid.is_plane() {
-            return;
-        }
         let piece = pieces(solid, joined);
         let apart = |body: usize| -> Vec<bool> { piece.iter().map(|other| *other != piece[body]).collect() };
         let meets = self.solids.iter().any(|ground| apart(ground.body()).contains(&true));
-        if meets || self.rigid_bodies.iter().any(has_walls) {
+        if meets || !is_plane && self.rigid_bodies.iter().any(has_walls) {
             debris.prepare_holders(solid);
         }
         for ground in &mut self.solids {
@@ -105,6 +105,14 @@ impl Contacts {
             }
         }
         self.solids.retain(|ground| ground.visitors().is_some() || !particles.is_empty());
+        if is_plane {
+            find_corners(&mut self.solids, debris);
+            for ground in &mut self.solids {
+                ground.expect_nodes(solid, debris);
+                self.nodes.frequency_square = self.nodes.frequency_square.max(ground.frequency_square());
+            }
+            return;
+        }
         self.nodes.edges = EdgeContacts::new(&self.solids);
         for (rigid_body, nodes) in self.rigid_bodies.iter().zip(&mut self.nodes.on_tools) {
             *nodes = has_walls(rigid_body).then(|| NodesOnSurface::new(surface, vec![true; piece.len()], debris));
@@ -252,6 +260,25 @@ impl Contacts {
         let edges = self.nodes.edges.as_ref().map_or(0, |edges| edges.touches().len());
         rigid_bodies + solids + edges + self.nodes.debris.as_ref().map_or(0, DebrisAmong::touching)
     }
+}
+
+/// Tells plane surfaces how the nodes that may touch them are corners of their own bodies.
+fn find_corners(solids: &mut [SolidSurface], debris: &Debris) {
+    let mut beside = BTreeMap::<u32, [Option<u32>; 2]>::new();
+    for ground in solids.iter().filter(|ground| ground.visitors().is_some()) {
+        for [a, b] in ground.lines() {
+            for (node, side, other) in [(a, 1, b), (b, 0, a)] {
+                if debris.body(node) == ground.body() {
+                    beside.entry(node).or_default()[side] = Some(other);
+                }
+            }
+        }
+    }
+    let of = |node: u32| match *beside.get(&node)? {
+        [Some(before), Some(after)] => Some([before, after]),
+        _ => None,
+    };
+    solids.iter_mut().for_each(|ground| ground.has_corners(of));
 }
 
 /// Whether nodes meet a rigid body as facets or as a container; those of other shapes know it as

@@ -31,6 +31,8 @@ pub(crate) struct NodesOnSurface {
     spin: Vec<Vec3>,
     radius: Vec<f64>,
     contacts: SurfaceContacts<Linear>,
+    /// Nodes before and after each of those of the start, counter-clockwise around its plane body, where there is one; empty in space.
+    beside: Vec<Option<[u32; 2]>>,
 }
 
 impl NodesOnSurface {
@@ -47,7 +49,16 @@ impl NodesOnSurface {
             radius: vec![0.0; nodes.len()],
             nodes,
             contacts: SurfaceContacts::new(SKIN * mean).on_solid_ground(DEPTH * mean),
+            beside: Vec::new(),
         }
+    }
+
+    /// The same in the plane.
+    ///
+    /// - `beside`: nodes before and after a node, counter-clockwise around its body
+    pub(crate) fn on_lines(mut self, beside: impl Fn(u32) -> Option<[u32; 2]>) -> Self {
+        self.beside = self.nodes.iter().map(|&node| beside(node)).collect();
+        self
     }
 
     pub(crate) fn contacts(&self) -> &SurfaceContacts<Linear> {
@@ -82,6 +93,32 @@ impl NodesOnSurface {
         }
     }
 
+    /// Finds where all nodes are, and looks up what is near them if the skin is used up.
+    fn search(&mut self, ground: &Surface, solid: &Solid) {
+        self.locate(solid);
+        let NodesOnSurface { nodes, position, velocity, spin, radius, contacts, beside, .. } = self;
+        contacts.search(ground, &Spheres { position, velocity, spin, radius });
+        if beside.is_empty() {
+            return;
+        }
+        contacts.set_corners(nodes.len(), |k| {
+            let [before, after] = (*beside.get(k as usize)?)?.map(|node| solid.position(node as usize));
+            let at = position[k as usize];
+            Some([at - before, after - at].map(|way| Vec3::new(way.y, -way.x, 0.0).normalize()))
+        });
+    }
+
+    /// Nodes that may touch the ground before it has moved far.
+    pub(crate) fn near(&mut self, ground: &Surface, solid: &Solid) -> impl Iterator<Item = u32> {
+        self.search(ground, solid);
+        self.contacts.near().map(|k| self.nodes[k as usize])
+    }
+
+    /// Nodes of plane bodies that were close to the ground at the last step, or within it.
+    pub(crate) fn close(&self) -> impl Iterator<Item = u32> {
+        self.contacts.close_corners().map(|k| self.nodes[k as usize])
+    }
+
     /// Adds nodes of new discrete elements, or makes them grow to their size.
     pub(crate) fn admit(&mut self, born: &[u32], ground: &Surface, solid: &Solid, debris: &Debris) {
         let mut grown: Vec<(u32, f64)> = Vec::new();
@@ -105,21 +142,19 @@ impl NodesOnSurface {
             return;
         }
         grown.sort_unstable_by_key(|g| g.0);
-        self.locate(solid);
         self.contacts.look_again();
+        self.search(ground, solid);
         let NodesOnSurface { position, velocity, spin, radius, contacts, .. } = self;
         let spheres = Spheres { position, velocity, spin, radius };
-        contacts.search(ground, &spheres);
         let growth = |k: u32| grown.binary_search_by_key(&k, |g| g.0).ok().map(|place| grown[place].1);
         contacts.accept_initial_overlap(ground, &spheres, growth);
     }
 
     /// Takes all contacts as they stand.
     pub(crate) fn accept_initial_overlap(&mut self, ground: &Surface, solid: &Solid) {
-        self.locate(solid);
+        self.search(ground, solid);
         let NodesOnSurface { position, velocity, spin, radius, contacts, .. } = self;
         let spheres = Spheres { position, velocity, spin, radius };
-        contacts.search(ground, &spheres);
         contacts.accept_initial_overlap(ground, &spheres, |_| Some(0.0));
     }
 
@@ -174,9 +209,8 @@ impl NodesOnSurface {
         law: impl Fn(&Solid, &Debris, u32) -> Linear + Sync,
         dt: f64,
     ) -> Work {
-        self.locate(solid);
+        self.search(ground, solid);
         let NodesOnSurface { nodes, position, velocity, spin, radius, contacts, .. } = self;
-        contacts.search(ground, &Spheres { position, velocity, spin, radius });
         for k in contacts.near() {
             spin[k as usize] = debris.turning_at(solid, nodes[k as usize]);
         }

@@ -22,6 +22,10 @@ pub struct SolidSurface {
     body: usize,
     surface: ContactParameters,
     elastic: ElasticMaterial,
+    /// Of a plane body [m]; 0 in space.
+    thickness: f64,
+    /// Smallest mass of its nodes [kg], once nodes of other plane bodies are expected.
+    lightest: f64,
     mesh: FacetMesh,
     /// Nodes of the solid that are points of the mesh.
     nodes: Vec<u32>,
@@ -64,6 +68,8 @@ impl SolidSurface {
             body,
             surface,
             elastic: ElasticMaterial { young_modulus: elastic.young_modulus, poisson_ratio: elastic.poisson_ratio },
+            thickness: solid.body(body).depth().map_or(0.0, |depth| depth.at(&points[0])),
+            lightest: f64::INFINITY,
             mesh: FacetMesh::new(&points, &local)?,
             velocity: vec![Vec3::zeros(); points.len()],
             nodes,
@@ -93,6 +99,21 @@ impl SolidSurface {
     /// - `surface`: nodes on the surfaces of all solids, ascending; `bodies`: whose nodes may touch this one
     pub(crate) fn has_node_contacts(&mut self, surface: &[u32], bodies: Vec<bool>, debris: &Debris) {
         self.visitors = Some(NodesOnSurface::new(surface, bodies, debris));
+    }
+
+    /// Takes into account how nodes that visit it are corners of plane bodies.
+    ///
+    /// - `beside`: nodes before and after a node, counter-clockwise around its body
+    pub(super) fn has_corners(&mut self, beside: impl Fn(u32) -> Option<[u32; 2]>) {
+        self.visitors = self.visitors.take().map(|visitors| visitors.on_lines(beside));
+    }
+
+    /// Ends of its lines, in scene nodes; nothing in space.
+    pub(super) fn lines(&self) -> impl Iterator<Item = [u32; 2]> {
+        (0..self.mesh.len() as u32).filter_map(|facet| match self.mesh.corners(facet) {
+            &[a, b] => Some([a, b].map(|point| self.nodes[point as usize])),
+            _ => None,
+        })
     }
 
     pub(super) fn prepared(mut self, skin: f64, materials: &[ContactMaterial], thickness: Option<f64>) -> Self {
@@ -257,11 +278,13 @@ impl SolidSurface {
 
     /// Adds the forces of nodes of other solids to both.
     pub(super) fn add_node_forces(&mut self, solid: &mut Solid, debris: &mut Debris, dt: f64) -> Work {
-        let SolidSurface { body, mesh, nodes, points, velocity, visitors, elastic, surface, .. } = self;
+        let SolidSurface {
+            body, mesh, nodes, points, velocity, visitors, elastic, surface, thickness, lightest, ..
+        } = self;
         let Some(visitors) = visitors else { return Work::default() };
         let ground = Surface::Deformable { surface: mesh, points, velocity };
         let law = |solid: &Solid, debris: &Debris, node: u32| {
-            debris.facet_law(node, solid.mass[node as usize], elastic, (*body, *surface))
+            debris.facet_law(node, solid.mass[node as usize], (elastic, *thickness), (*body, *surface))
         };
         let work = visitors.add_forces(&ground, solid, debris, law, dt);
         let mut fastest: f64 = 0.0;
@@ -274,8 +297,29 @@ impl SolidSurface {
             });
             fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
         }
+        // A step that changes as bodies hit each other costs energy: it is short before.
+        for node in visitors.close() {
+            let mobility = 1.0 / solid.mass[node as usize] + 1.0 / *lightest;
+            fastest = fastest.max(frequency_square(&law(solid, debris, node), mobility));
+        }
         self.frequency_square = self.frequency_square.max(fastest);
         work
+    }
+
+    /// Has the step be short from the start where nodes of other plane solids are close to it.
+    pub(super) fn expect_nodes(&mut self, solid: &Solid, debris: &Debris) {
+        self.locate(solid);
+        let lightest = self.nodes.iter().map(|&n| solid.mass[n as usize]).fold(f64::INFINITY, f64::min);
+        self.lightest = lightest;
+        let SolidSurface { body, mesh, points, velocity, visitors, elastic, surface, thickness, .. } = self;
+        let ground = Surface::Deformable { surface: mesh, points, velocity };
+        let near = visitors.iter_mut().flat_map(|visitors| visitors.near(&ground, solid));
+        let asked = near.map(|node| {
+            let mass = solid.mass[node as usize];
+            let law = debris.facet_law(node, mass, (elastic, *thickness), (*body, *surface));
+            frequency_square(&law, 1.0 / mass + 1.0 / lightest)
+        });
+        self.frequency_square = asked.fold(self.frequency_square, f64::max);
     }
 
     fn locate(&mut self, solid: &Solid) {

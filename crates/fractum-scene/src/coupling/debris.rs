@@ -229,19 +229,23 @@ impl Debris {
         (2.0 * e1 * e2 / (e1 + e2), 0.5 * (nu1 + nu2))
     }
 
-    /// The law of a node of a solid in space on a facet of another body.
+    /// The law of a node of a solid on a facet of another body, or on a line of a plane one.
     ///
-    /// - `body`, `surface`: the other body
+    /// - `other`, `thickness`, `body`, `surface`: the other body; its thickness [m] is 0 in space
     pub(crate) fn facet_law(
         &self,
         node: u32,
         mass: f64,
-        other: &ElasticMaterial,
+        (other, thickness): (&ElasticMaterial, f64),
         (body, surface): (usize, ContactParameters),
     ) -> Linear {
-        let (e, nu) = self.mean_elasticity(node, other);
+        let ((e, nu), radius) = (self.mean_elasticity(node, other), self.radius(node));
         let surface = self.surface_with(node, ContactBody::Solid(body), surface);
-        Linear::on_wall(e, nu, self.radius(node), mass, surface)
+        if thickness > 0.0 {
+            Linear::disc_on_wall(e, nu, radius, thickness.min(self.thickness(node)), mass, surface)
+        } else {
+            Linear::on_wall(e, nu, radius, mass, surface)
+        }
     }
 
     /// Finds the elements that hold the nodes; needed before a node that is no particle yet touches facets.

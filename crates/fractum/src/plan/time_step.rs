@@ -15,6 +15,7 @@ impl Plan {
                 let (body, element) = stable.governing;
                 format!("element {element} of {}", scene.solid.body(body).name)
             }
+            None if scene.contacts_govern() && scene.bonded.is_empty() => "the contacts of solids".to_owned(),
             None if scene.contacts_govern() => "the contacts of particles".to_owned(),
             None => "the bonds".to_owned(),
         };
