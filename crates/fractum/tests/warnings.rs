@@ -211,9 +211,9 @@ pub(crate) fn halves(mut mesh: Mesh, apart: bool) -> Mesh {
 }
 
 /// Moves the half with nodes of its own away.
-fn away(mut mesh: Mesh) -> Mesh {
+fn away(mut mesh: Mesh, by: f64) -> Mesh {
     let count = mesh.nodes.len() / 2;
-    mesh.nodes[count..].iter_mut().for_each(|node| node.x += 0.01);
+    mesh.nodes[count..].iter_mut().for_each(|node| node.x += by);
     mesh
 }
 
@@ -283,11 +283,16 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
         checked("coincident-nodes", halves(bar(), true), &[(support, &second(""))]),
         checked(
             "no-contact",
-            away(halves(plate(), true)),
+            away(halves(plate(), true), 0.01),
             &[
                 ("material = \"stone\"\n[[supports]]", "material = \"stone\"\nplane = \"axisymmetric\"\n[[supports]]"),
                 (support, &second("plane = \"axisymmetric\"\n")),
             ],
+        ),
+        checked(
+            "no-contact",
+            away(halves(bar(), true), 1e-4),
+            &[(support, &second("")), (end, static_end), held_across],
         ),
         checked("unheld", bar(), &[("[[supports]]\ngroup = \"x-\"\nfix = \"PLANE\"\n", ""), (end, "end = \"4 ms\"")]),
         checked(

@@ -14,6 +14,8 @@ use crate::{Diagnostic, Place};
 
 /// Instants at which the motion of a tool is looked at.
 const LOOKS: u32 = 1000;
+/// Distance of two bodies over the size of the smaller one up to which they lie beside each other.
+const BESIDE: f64 = 0.02;
 
 /// Spheres that could meet plane solids, and solids about an axis that could meet each other: they pass through each other.
 pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagnostic> {
@@ -47,6 +49,40 @@ pub(super) fn meetings(case: &Case, mesh: &Mesh, bodies: &[Own]) -> Option<Diagn
             "they pass through each other where they meet: mesh both with common nodes, or make one of them rigid",
         ),
     )
+}
+
+/// Solids at rest that lie beside each other without anything in common: nothing touches there.
+///
+/// - `is_gone`: those that are not there
+pub(super) fn beside_at_rest(
+    case: &Case,
+    mesh: &Mesh,
+    bodies: &[Own],
+    is_gone: impl Fn(&Own) -> bool,
+) -> Option<Diagnostic> {
+    let rests = matches!(case.solver.kind, SolverKind::Static | SolverKind::Auto);
+    // Meshes that a command makes may not be there yet.
+    if !rests || bodies.iter().any(|body| body.nodes.is_empty()) {
+        return None;
+    }
+    let pieces = pieces(mesh, bodies);
+    let boxes: Vec<(Vec3, Vec3)> = bodies.iter().map(|body| extent(mesh, std::slice::from_ref(body))).collect();
+    let is_beside = |a: usize, b: usize| {
+        let [(low, high), (from, to)] = [boxes[a], boxes[b]];
+        let apart = (from - high).sup(&(low - to)).max();
+        pieces[a] != pieces[b] && apart <= BESIDE * (high - low).max().min((to - from).max())
+    };
+    let pairs = (0..bodies.len()).flat_map(|second| (0..second).map(move |first| (first, second)));
+    let (first, second) =
+        pairs.filter(|(a, b)| ![a, b].iter().any(|own| is_gone(&bodies[**own]))).find(|(a, b)| is_beside(*a, *b))?;
+    let found = format!(
+        "= \"{}\": it has no nodes in common with \"{}\" beside it, and solids do not touch each other at rest",
+        bodies[second].name.value, bodies[first].name.value
+    );
+    let note = Diagnostic::warning(Code::NoContact, &bodies[second].name.place, found);
+    Some(note.remedy(
+        "they pass through each other where they meet: mesh both with common nodes, make one of them rigid, or let them move (kind = \"explicit\")",
+    ))
 }
 
 /// Bodies whose nodes lie in the same places without being the same, where nothing makes them touch.

@@ -13,7 +13,9 @@ use super::body_doubts::{Own, extent, moved_as_a_whole, nodes_of, pieces, pushed
 use super::idle_doubts::{all_prescribed, facet_normals, measured_in_vain, tables_in_vain, taken_at_once, unmoved};
 use super::in_situ_doubts::doubts_of_in_situ;
 use super::load_doubts::{doubts_of_loads, odd_reactions};
-use super::meeting_doubts::{adhesion_in_vain, coincident, meetings, missing, overlapping, rebounds, undamped};
+use super::meeting_doubts::{
+    adhesion_in_vain, beside_at_rest, coincident, meetings, missing, overlapping, rebounds, undamped,
+};
 use super::{contact_pairs, inlets, periodic};
 use crate::model::{BodyKind, Case, GroupUse, Load, LoadKind, Motion, Probe, ProbeKind, Selection, SolverKind};
 use crate::{Choice, Diagnostic, Spanned, TimeFunction};
@@ -58,7 +60,7 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
         meets = coincident(case, mesh, &bodies);
     }
     if meets.is_empty() {
-        doubts.extend(meetings(case, mesh, &bodies));
+        doubts.extend(meetings(case, mesh, &bodies).or_else(|| beside_at_rest(case, mesh, &bodies, gone)));
     }
     doubts.extend(meets);
     doubts.extend(missing(case, mesh, &bodies));
