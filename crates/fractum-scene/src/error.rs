@@ -221,7 +221,7 @@ pub enum StepError {
     },
     /// A piece is held by nothing any more.
     #[error(
-        "step {step}, t = {time:.6e} s: the stiffness is singular near ({x:.4e}, {y:.4e}, {z:.4e}) m: a piece has come loose; end the run before with \
+        "step {step}, t = {time:.6e} s: the stiffness is singular near ({x:.4e}, {y:.4e}, {z:.4e}) m: {softer}a piece has come loose; end the run before with \
          solver.stop_when, or run it with kind = \"explicit\""
     )]
     ComeApart {
@@ -235,6 +235,8 @@ pub enum StepError {
         y: f64,
         /// Position of the node [m].
         z: f64,
+        /// What stiff faces that rub may need, with what parts it from the rest; else empty.
+        softer: &'static str,
     },
     /// A linear system was not solved.
     #[error("step {step}, t = {time:.6e} s: {reason} - choose the other solver.linear_solver")]

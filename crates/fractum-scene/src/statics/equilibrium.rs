@@ -114,14 +114,19 @@ pub(super) fn accept_equilibrium(
 ///
 /// - `follows`: whether the run follows its path already
 pub(super) fn no_equilibrium(scene: &Scene, follows: bool) -> StepError {
-    let softer = if scene.interfaces().rub() {
-        "interfaces that were never joined may slide by turns where they are very stiff: give them a normal_stiffness of a tenth of that in the plan or less; or "
-    } else {
-        ""
-    };
+    let softer = softer(scene);
     // Temperatures belong to times.
     let path = if follows || scene.heat().is_some() { "" } else { "follow it with control = \"path\", " };
     StepError::NoEquilibrium { step: scene.clock.step, time: scene.clock.time, softer, path }
+}
+
+/// What stiff faces that rub may need, with what parts it from the rest of a message; else empty.
+fn softer(scene: &Scene) -> &'static str {
+    if scene.interfaces().rub() {
+        "interfaces that were never joined may slide by turns where they are very stiff: give them a normal_stiffness of a tenth of that in the plan or less; or "
+    } else {
+        ""
+    }
 }
 
 /// Fails where anchors alone hold what is loaded.
@@ -141,7 +146,7 @@ pub(super) fn come_apart(scene: &Scene, error: SparseError) -> StepError {
     match error {
         SparseError::Indefinite { node, .. } => {
             let p = scene.solid.reference[node];
-            StepError::ComeApart { step, time, x: p.x, y: p.y, z: p.z }
+            StepError::ComeApart { step, time, x: p.x, y: p.y, z: p.z, softer: softer(scene) }
         }
         SparseError::Stalled { .. } | SparseError::TooLarge { .. } => {
             StepError::NoSolution { step, time, reason: error.to_string() }

@@ -361,8 +361,10 @@ impl StaticSolver {
                     continue;
                 }
             }
-            // What slides between elastic bodies by turns does so in shorter steps too: more iterations cost less than they do.
-            if points.is_empty() && !scene.interfaces().is_empty() && !monotone {
+            // What slides between elastic bodies by turns does so in shorter steps too: more iterations cost less than they do. What softens is
+            // followed in shorter ones.
+            let slides = !scene.interfaces().is_empty() && !scene.interfaces().may_soften();
+            if points.is_empty() && slides && !monotone {
                 monotone = true;
                 continue;
             }
