@@ -96,8 +96,6 @@ fn templates_run_to_their_cracks() {
     let ligament = 3e6 * 0.1 * 0.07 * 0.07 / (6.0 * 0.3 / 4.0);
     let load = largest("beam", "load");
     assert!((1.0..2.0).contains(&(load / ligament)), "{load} N of {ligament} N");
-    let strength = largest("bonded-ucs", "strength");
-    assert!((90e6..110e6).contains(&strength), "{strength} Pa");
     // Between the residual strength, tan 30 deg, and cohesion with friction, 0.5 + tan 35 deg.
     let ratio = largest("shear", "stress_ratio");
     assert!((1.1..1.201).contains(&ratio), "{ratio}");
@@ -112,6 +110,13 @@ fn the_push_on_the_ball_is_its_change_of_momentum() {
     let change = 0.26 * (velocity[time.len() - 1] - velocity[0]);
     assert!((impulse / change - 1.0).abs() < 0.02, "{impulse} N s, {change} N s");
     assert!(velocity[time.len() - 1].abs() < 1.0, "the slab has stopped it: {} m/s", velocity[time.len() - 1]);
+}
+
+#[test]
+#[ignore = "a minute: .ci/nightly heavy"]
+fn the_crushed_cylinder_has_the_strength_that_it_was_calibrated_to() {
+    let strength = largest("bonded-ucs", "strength");
+    assert!((90e6..110e6).contains(&strength), "{strength} Pa");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The list of keys against the reader, the documentation and the schema.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use fractum_case::{Case, Diagnostic, KeyKind, explain, keys, schema};
@@ -146,18 +146,16 @@ fn no_value_goes_unread() {
 #[test]
 fn documented_defaults_are_the_defaults() {
     let text = every_key();
-    let same = |a: &Case, b: &Case| {
-        let plain = |case: &Case| {
-            let mut case = case.clone();
-            case.source.overrides.clear();
-            // Places, the hash of what is written, and whether a unit is named differ between what is written and what is not.
-            let text = format!("{case:?}").replace("is_named: true", "is_named: false");
-            let (before, after) = text.split_once("hash_but_end: ").expect("the hash of the source");
-            let text = before.to_owned() + after.trim_start_matches(|c: char| c.is_ascii_digit());
-            text.split("place: Place").map(|part| part.split_once('}').map_or(part, |p| p.1)).collect::<String>()
-        };
-        plain(a) == plain(b)
+    let plain = |mut case: Case| {
+        case.source.overrides.clear();
+        // Places, the hash of what is written, and whether a unit is named differ between what is written and what is not.
+        let text = format!("{case:?}").replace("is_named: true", "is_named: false");
+        let (before, after) = text.split_once("hash_but_end: ").expect("the hash of the source");
+        let text = before.to_owned() + after.trim_start_matches(|c: char| c.is_ascii_digit());
+        text.split("place: Place").map(|part| part.split_once('}').map_or(part, |p| p.1)).collect::<String>()
     };
+    // Most keys are in few of the samples: their silent text is that of the sample, which is read once.
+    let mut read: HashMap<String, Option<String>> = HashMap::new();
     // Where a key may stand in the two samples.
     let at_rest = SMALL.replace("end = 1e-3", STATIC);
     let breaking = SMALL.replace("[[bodies]]", "[materials.steel.fracture]\ntensile_strength = 1e9\n[[bodies]]");
@@ -231,13 +229,16 @@ fn documented_defaults_are_the_defaults() {
             let value = default["v"].to_string();
             // Take the key out first, so that the document is silent about it.
             let silent = without(text, &path).unwrap_or(text.to_string());
-            if let (Ok(silent), Ok(written)) = (parse(&silent, &[]), parse(&silent, &[(&path, &value)])) {
-                let absent_is_cheaper = matches!(key.kind, KeyKind::Field(_) | KeyKind::TimeFunction(_));
-                let kept_for_the_mesh = ["bodies[].plane", "bodies[].thickness"].contains(&key.path);
-                if !absent_is_cheaper && !kept_for_the_mesh {
-                    assert!(same(&silent, &written), "{path} = {value} is not the default");
-                    tried = true;
-                }
+            let absent_is_cheaper = matches!(key.kind, KeyKind::Field(_) | KeyKind::TimeFunction(_));
+            let kept_for_the_mesh = ["bodies[].plane", "bodies[].thickness"].contains(&key.path);
+            if absent_is_cheaper || kept_for_the_mesh {
+                continue;
+            }
+            let Ok(written) = parse(&silent, &[(&path, &value)]) else { continue };
+            let without = read.entry(silent.clone()).or_insert_with(|| parse(&silent, &[]).ok().map(plain));
+            if let Some(without) = without {
+                assert!(*without == plain(written), "{path} = {value} is not the default");
+                tried = true;
             }
         }
         if !tried {

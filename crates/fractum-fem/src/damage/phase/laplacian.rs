@@ -52,19 +52,13 @@ impl Rows {
         self.values[begin..begin + self.lengths[row] as usize].iter().map(move |values| values.0[row % FOUR])
     }
 
-    /// (L d) of a row.
-    #[inline]
-    pub(crate) fn product(&self, row: usize, field: &[f64]) -> f64 {
-        self.edges(row).zip(self.values(row)).map(|(edge, value)| value * field[edge as usize]).sum()
-    }
-
     /// Value of a row on the diagonal [m³/m²].
     #[inline]
     pub(crate) fn diagonal(&self, row: usize) -> f64 {
         self.values[self.group(row / FOUR).start].0[row % FOUR]
     }
 
-    /// (L d) of a group of rows, each with the bits that it has alone.
+    /// (L d) of a group of rows, each summed in the order of its entries.
     #[inline(always)]
     pub(crate) fn products(&self, group: usize, field: &[f64]) -> Lane {
         let range = self.group(group);

@@ -1,7 +1,8 @@
 //! The phase field at rest: a projected Newton method for given drives.
 
-use fractum_math::{FOUR, Lane};
+use fractum_math::{FOUR, Lane, widest};
 
+use super::laplacian::Rows;
 use super::{Drive, DriveOfFour, PhaseField};
 
 /// Newton steps at most, and the change of d at which they end.
@@ -11,11 +12,19 @@ const CHANGE: f64 = 1e-7;
 const ITERATIONS: usize = 200;
 const RESIDUAL: f64 = 1e-4;
 
+/// A row that is not held.
+struct Free {
+    row: u32,
+    edge: u32,
+    /// The diagonal of its equation, and the part of it that is not of the Laplacian.
+    diagonal: f64,
+    slope: f64,
+}
+
 /// Vectors of the linear solution over the edges of the body, zero where an edge is held.
 #[derive(Default)]
 struct Solution {
-    /// Rows that are free, with the diagonal of their equation.
-    free: Vec<(usize, f64)>,
+    free: Vec<Free>,
     change: Vec<f64>,
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -39,16 +48,16 @@ impl PhaseField {
             if work.free.is_empty() {
                 return;
             }
-            self.conjugate_gradients(&mut work);
+            conjugate_gradients(&self.rows, self.law.gradient, &mut work);
             let mut largest: f64 = 0.0;
-            for &(row, _) in &work.free {
-                let edge = self.active[row].edge as usize;
+            for own in &work.free {
+                let edge = own.edge as usize;
                 let next = (d[edge] + work.change[edge]).clamp(self.value[edge], 1.0);
                 largest = largest.max((next - d[edge]).abs());
                 d[edge] = next;
             }
-            for &(row, _) in &work.free {
-                let edge = self.active[row].edge as usize;
+            for own in &work.free {
+                let edge = own.edge as usize;
                 (work.change[edge], work.direction[edge]) = (0.0, 0.0);
             }
             if largest < CHANGE {
@@ -70,53 +79,65 @@ impl PhaseField {
             for (k, own) in active.iter().enumerate() {
                 let (edge, row, residual) = (own.edge as usize, group * FOUR + k, residuals[k]);
                 let held = residual >= 0.0 && d[edge] <= self.value[edge] || residual <= 0.0 && d[edge] >= 1.0;
-                let slope = slopes[k] + self.law.gradient * self.rows.diagonal(row);
-                if !held && slope > 0.0 {
+                let own = self.law.gradient * self.rows.diagonal(row);
+                let diagonal = slopes[k] + own;
+                if !held && diagonal > 0.0 {
                     work.residual[edge] = -residual;
-                    work.free.push((row, slope));
+                    let (row, edge) = (row as u32, edge as u32);
+                    work.free.push(Free { row, edge, diagonal, slope: diagonal - own });
                 }
             }
         }
     }
+}
 
+widest! {
     /// Solves (V max(ω'', 0) Y + c L) δ = -R on the free edges, with the diagonal as preconditioner.
-    fn conjugate_gradients(&self, work: &mut Solution) {
-        let Solution { free, change, residual, direction, image } = work;
-        let edge = |row: usize| self.active[row].edge as usize;
-        let mut product = 0.0;
-        for &(row, diagonal) in &*free {
-            let (e, r) = (edge(row), residual[edge(row)]);
-            direction[e] = r / diagonal;
-            product += r * direction[e];
+    fn conjugate_gradients(rows: &Rows, gradient: f64, work: &mut Solution) = conjugate_directions;
+}
+
+#[inline(always)]
+fn conjugate_directions(rows: &Rows, gradient: f64, work: &mut Solution) {
+    let Solution { free, change, residual, direction, image } = work;
+    let mut product = 0.0;
+    for own in &*free {
+        let e = own.edge as usize;
+        let r = residual[e];
+        direction[e] = r / own.diagonal;
+        product += r * direction[e];
+    }
+    let enough = RESIDUAL * RESIDUAL * product;
+    for _ in 0..ITERATIONS {
+        let mut curvature = 0.0;
+        let (mut group, mut flows) = (usize::MAX, Lane::ZERO);
+        for own in &*free {
+            let (e, row) = (own.edge as usize, own.row as usize);
+            if group != row / FOUR {
+                group = row / FOUR;
+                flows = rows.products(group, direction);
+            }
+            image[e] = own.slope * direction[e] + gradient * flows.0[row % FOUR];
+            curvature += direction[e] * image[e];
         }
-        let enough = RESIDUAL * RESIDUAL * product;
-        for _ in 0..ITERATIONS {
-            let mut curvature = 0.0;
-            for &(row, diagonal) in &*free {
-                let e = edge(row);
-                let (flow, own) = (self.rows.product(row, direction), self.rows.diagonal(row));
-                image[e] = (diagonal - self.law.gradient * own) * direction[e] + self.law.gradient * flow;
-                curvature += direction[e] * image[e];
-            }
-            if curvature.is_nan() || curvature <= 0.0 {
-                return;
-            }
-            let step = product / curvature;
-            let mut next = 0.0;
-            for &(row, diagonal) in &*free {
-                let e = edge(row);
-                change[e] += step * direction[e];
-                residual[e] -= step * image[e];
-                next += residual[e] * residual[e] / diagonal;
-            }
-            if next <= enough {
-                return;
-            }
-            for &(row, diagonal) in &*free {
-                let e = edge(row);
-                direction[e] = residual[e] / diagonal + next / product * direction[e];
-            }
-            product = next;
+        if curvature.is_nan() || curvature <= 0.0 {
+            return;
         }
+        let step = product / curvature;
+        let mut next = 0.0;
+        for own in &*free {
+            let e = own.edge as usize;
+            change[e] += step * direction[e];
+            residual[e] -= step * image[e];
+            next += residual[e] * residual[e] / own.diagonal;
+        }
+        if next <= enough {
+            return;
+        }
+        let turn = next / product;
+        for own in &*free {
+            let e = own.edge as usize;
+            direction[e] = residual[e] / own.diagonal + turn * direction[e];
+        }
+        product = next;
     }
 }
