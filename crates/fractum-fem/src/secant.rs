@@ -40,18 +40,23 @@ pub struct SecantCell<'a> {
     bedded: Option<(&'a Stiffness, f64)>,
     /// Stress of its thermal strain, the same in all directions, times V (1 - d) [N m]; of beds the thermal strain. 0 where nothing expands.
     thermal: f64,
-    /// Strain at which it is free of stress, where it came in during the run.
+    /// Strain at which it is free of stress, where there is one.
     born: Option<&'a Sym3>,
 }
 
 impl SecantCell<'_> {
-    /// Stress of a displacement gradient times V (1 - d) [N m].
+    /// Stress that a displacement gradient adds, times V (1 - d) [N m].
     #[inline]
-    pub fn stress(&self, h: &Mat3) -> Mat3 {
+    pub fn stress_change(&self, h: &Mat3) -> Mat3 {
         self.stress_beyond(h, 0.0)
     }
 
-    /// The same less a share of the thermal stress and of that at which it came in.
+    /// Stress at a displacement gradient times V (1 - d) [N m].
+    pub fn stress(&self, h: &Mat3) -> Mat3 {
+        self.stress_beyond(h, 1.0)
+    }
+
+    /// The same with a share of the thermal strain and of that at which it is free of stress.
     #[inline]
     fn stress_beyond(&self, h: &Mat3, share: f64) -> Mat3 {
         let since = self.born.map(|born| h - born.to_matrix() * share);
@@ -229,7 +234,7 @@ impl Solid {
         }
     }
 
-    /// Forces that hold the displacements `field` against the secant stiffness, thermal strains and those at which cells came in [N].
+    /// Forces that hold the displacements `field` against the secant stiffness, thermal strains and those at which cells are free of stress [N].
     pub fn secant_force(&self, damage: &CellDamage, field: &[Vec3], force: &mut [Vec3]) {
         add_up(self, damage, field, 1.0, force);
     }
@@ -419,7 +424,7 @@ impl Solid {
 
 /// Adds up the nodal forces of the cells under a field.
 ///
-/// - `share`: part of the thermal stresses that counts, and of those at which cells came in
+/// - `share`: part of the thermal stresses that counts, and of the strains at which cells are free of stress
 fn add_up(solid: &Solid, damage: &CellDamage, field: &[Vec3], share: f64, force: &mut [Vec3]) {
     force.fill(Vec3::zeros());
     solid.for_each_cell(damage, |cell| {

@@ -48,7 +48,7 @@ pub struct SolidState {
     pub viscous_dissipation: f64,
     /// Viscous stress times volume of the cells, block by block; empty without viscosity.
     pub viscous: Vec<Vec<Sym3>>,
-    /// Strains at which the cells came in, block by block, empty of those that were there from the start; empty where all were.
+    /// Strains at which the cells are free of stress, block by block, empty of blocks where it is none; empty where it is none anywhere.
     pub born: Vec<Vec<Sym3>>,
 }
 
@@ -148,7 +148,7 @@ impl Solid {
     }
 }
 
-/// Strains at which the cells came in, block by block; nothing where all were there from the start.
+/// Strains at which the cells are free of stress, block by block; nothing where they are none.
 fn born(solid: &Solid) -> Vec<Vec<Sym3>> {
     if solid.blocks.iter().all(|block| block.cells.born.is_none()) {
         return Vec::new();

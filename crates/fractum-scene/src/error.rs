@@ -81,6 +81,26 @@ pub enum SceneError {
          support holds, and its shear must be the same on facets across each other"
     )]
     InSituTurns,
+    /// Stress that bodies have as it is written is not in equilibrium.
+    #[error(
+        "at ({x:.4e}, {y:.4e}, {z:.4e}) m, a node of {bodies}, the stress as it is written leaves a force of {force:.3e} N out of balance, {share:.1e} of what the largest stress \
+         does there: on a side that two bodies share both must have the same traction, outer facets that no support holds need in_situ.groups or no traction, and loads of \
+         t = 0 must belong to the stress. Take out openings in a later stage (excavate)"
+    )]
+    InSituUneven {
+        /// Where [m].
+        x: f64,
+        /// Where [m].
+        y: f64,
+        /// Where [m].
+        z: f64,
+        /// Names of the bodies that have the node.
+        bodies: String,
+        /// Force that nothing carries [N].
+        force: f64,
+        /// The same over what the largest stress does on the areas of the node.
+        share: f64,
+    },
     /// The in-situ stress is more than the material bears.
     #[error(
         "body {body}: in the state of t = 0 an edge at ({x:.4e}, {y:.4e}, {z:.4e}) m is at {ratio:.3} times its strength; a run begins with intact \

@@ -295,8 +295,14 @@ impl Plan {
             self.add("domain", format!("free pieces outside {} to {} leave the run", corner(min), corner(max)));
         }
         let is_first = case.excavation.is_none() || !case.later.is_empty();
-        if case.in_situ.is_some() && is_first {
-            self.add("in situ", "at rest under the stress of the far field at t = 0; displacements count from there");
+        if let Some(stress) = case.in_situ.as_ref().filter(|_| is_first) {
+            self.add(
+                "in situ",
+                match stress.is_as_written() {
+                    true => "at rest at t = 0, every body with its stress as it is written",
+                    false => "at rest under the stress of the far field at t = 0; displacements count from there",
+                },
+            );
         }
         if let Some(gas) = scene.gas() {
             let of = |measure| gas.measure(&scene.solid, measure, None);

@@ -171,6 +171,34 @@ fn a_joint_above_a_hole_slides_from_the_friction_angle_of_the_elastic_stress_on(
     }
 }
 
+/// A lining comes in beside a joint that ends before it: the closed form of the case without a joint holds while nothing slides. Joints that cut the
+/// lining are refused by name.
+#[test]
+fn a_lining_comes_in_beside_a_joint() {
+    let case = include_str!("../../../cases/excavation/lining.toml")
+        .replace("../../meshes/excavation-plane/lining.msh", "bar.msh")
+        .replace("\"bar.msh\"\n", "\"bar.msh\"\njoints = [{ name = \"joint\", table = [[\"0 m\", \"HEIGHT\", \"30 m\", \"HEIGHT\"]] }]\n")
+        .replace("[in_situ]", "[[interfaces]]\nname = \"joint\"\ngroup = \"joint\"\nbonded = false\nresidual_friction_angle = \"angle\"\n[in_situ]")
+        .replace("share = 0.5\n", "share = 0.5\nangle = \"25 deg\"\n");
+    let mesh = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/../../meshes/excavation-plane/lining.msh")).unwrap();
+    let place = Workplace::with_mesh(&case.replace("HEIGHT", "7.5 m"), &mesh);
+    for (angle, slides) in [("25 deg", false), ("15 deg", true)] {
+        let set = format!("angle={angle}");
+        let ended = place.fractum(&["run", "case.toml", "--quiet", "-o", "one", "--overwrite", "--set", &set]);
+        assert_eq!(ended.code, Some(0), "{angle}: {}", ended.stderr);
+        let one = summary(&place, "one");
+        assert_eq!(energy(&one, "friction") > 1.0, slides, "{angle}: {}", one["energy"]);
+        assert!(energy(&one, "residual_max_relative") < 1e-4, "{angle}: {}", one["energy"]);
+        // That of the case.
+        let [side, hoop] = ["side", "hoop"].map(|name| one["probes"][name]["final"].as_f64().unwrap());
+        let near = (side / 2.719e-3 - 1.0).abs() < 0.02 && (hoop / -6.494e6 - 1.0).abs() < 0.02;
+        assert!(near || slides, "{angle}: {side} {hoop}");
+    }
+    let ended = Workplace::with_mesh(&case.replace("HEIGHT", "2 m"), &mesh).fractum(&["check", "case.toml"]);
+    let words = "interfaces[0]: it cuts body \"lining\", which comes in later, at (";
+    assert!(ended.code == Some(1) && ended.stderr.contains(words), "{}", ended.stderr);
+}
+
 /// A joint that meets a side on which a support holds both of its sides askew, and crosses the border of what leaves, 0.5 radii from the middle of
 /// the hole. Among elements of 1 to 20 mm it must not be led along that border. By Lamé it bears up to 30 degrees, at the wall.
 #[test]

@@ -25,6 +25,7 @@ mod inlets;
 mod interfaces;
 mod interrupt;
 mod jointed;
+mod layers;
 mod loose;
 mod material;
 mod meant;

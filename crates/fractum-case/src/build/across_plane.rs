@@ -35,7 +35,8 @@ pub(super) fn check(context: &mut Context<'_>, parts: &[Part]) {
             "a component along x or y",
         );
     }
-    let shear = context.case.in_situ.iter().flat_map(|in_situ| in_situ.stress[SHEARS].iter().flatten());
+    let stresses = context.case.in_situ.iter().flat_map(|in_situ| in_situ.fields());
+    let shear = stresses.flat_map(|stress| stress.components[SHEARS].iter().flatten());
     for field in shear.filter(|field| field.value.constant_value() != Some(0.0)) {
         context.error(
             &field.place,

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use fractum_fem::fields::element_fields;
-use fractum_fem::{Body, ElementKind, Plane, Solid, Stiffness};
-use fractum_math::{Mat3, Sym3, Vec3};
+use fractum_fem::{Body, ElementKind, Solid};
+use fractum_math::{Sym3, Vec3};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{Load, NodalForce};
@@ -14,9 +14,10 @@ use nalgebra::{Matrix6, Vector6};
 use super::Context;
 use super::bodies::Numbering;
 use super::body_doubts::named;
-use super::conditions::Surface;
-use crate::model::{Case, InSitu, LoadKind, Selection};
-use crate::{Diagnostic, Place};
+use super::conditions::{Surface, sorted};
+use super::in_situ_layers::{bodies_of_sides, bodies_there, check_layers, largest_of, strain_of};
+use crate::Diagnostic;
+use crate::model::{Case, InSitu, LoadKind, Selection, StressField};
 
 /// How far a stress may be from linear, over its largest component; and forces from balance, over the largest.
 const LINEAR: f64 = 1e-9;
@@ -58,23 +59,23 @@ pub(super) fn in_situ_loads(
     }
     on.sort_unstable();
     on.dedup();
-    let Some(field) = far_field(context, stress, &numbering.positions) else { return Vec::new() };
+    let Some(fields) = Fields::of(context, stress, solid, &numbering.positions) else { return Vec::new() };
     let is_held = context.case.supports.iter().any(|support| support.motion.iter().any(Option::is_some));
     if context.case.is_first_stage() && on.is_empty() && !is_held && context.diagnostics.is_empty() {
         context.error(&stress.place, ": it acts on no facet", "absorbing or elastic supports, or groups of facets");
     }
     if context.case.is_first_stage() {
-        check_weight(context, &stress.place, &field, solid);
+        check_weight(context, stress, &fields, solid);
     }
-    if context.diagnostics.is_empty() && context.case.is_first_stage() {
-        context.held_by_far_field = check_in_situ_supports(context, &field, (surface, &on), solid, numbering);
+    if let (true, true, Some(field)) = (context.diagnostics.is_empty(), context.case.is_first_stage(), fields.far()) {
+        context.held_by_far_field = check_in_situ_supports(context, field, (surface, &on), solid, numbering);
     }
-    if context.diagnostics.is_empty() { tractions(&field, &on, surface, &numbering.positions) } else { Vec::new() }
+    if context.diagnostics.is_empty() { tractions(&fields, &on, surface, solid) } else { Vec::new() }
 }
 
 /// A body among bodies of other materials whose mean stress at the start is not the one asked for.
 pub(super) fn shared(case: &Case, solid: &Solid) -> Option<Diagnostic> {
-    let stress = case.in_situ.as_ref()?;
+    let stress = case.in_situ.as_ref().filter(|stress| !stress.is_as_written())?.stress.as_ref()?;
     let there = bodies_there(case, solid);
     let &first = there.first()?;
     if there.iter().all(|&body| is_alike(solid.body(first), solid.body(body))) {
@@ -107,13 +108,13 @@ pub(super) fn shared(case: &Case, solid: &Solid) -> Option<Diagnostic> {
     let (_, body, component, values) = worst.filter(|(off, ..)| *off > SHARED * largest)?;
     let [found, asked] = values.map(|stress| quantity(stress, "Pa"));
     let found = format!(
-        ".stress: body \"{}\" begins with a mean {} of {found}, and {asked} is asked: joined bodies of unlike stiffness share the stress",
+        ": body \"{}\" begins with a mean {} of {found}, and {asked} is asked: joined bodies of unlike stiffness share the stress",
         solid.body(body).name,
         ["xx", "yy", "zz", "xy", "yz", "zx"][component],
     );
     let note = Diagnostic::warning(Code::SharedStress, &stress.place, found);
     Some(note.remedy(
-        "that is right for rock that was pressed as a whole; layers with a stress of their own are not modelled",
+        "that is right for rock that was pressed as a whole; give layers that came to rest one after the other their own stress by in_situ.layers",
     ))
 }
 
@@ -123,14 +124,50 @@ fn is_alike(a: &Body, b: &Body) -> bool {
     moduli(a) == moduli(b) && a.bedding == b.bedding
 }
 
-/// Numbers of the bodies that are there.
-fn bodies_there(case: &Case, solid: &Solid) -> Vec<usize> {
-    let is_gone = |name: &String| case.excavation.as_ref().is_some_and(|own| own.gone.contains(name));
-    (0..solid.body_count()).filter(|&body| !is_gone(&solid.body(body).name)).collect()
+/// The stress of every body.
+struct Fields {
+    /// Those that the case writes.
+    all: Vec<FarField>,
+    /// Which of them a body has; none of one that is not there.
+    of_body: Vec<Option<usize>>,
+    is_as_written: bool,
 }
 
-/// The stress as a linear function.
-fn far_field(context: &mut Context<'_>, stress: &InSitu, positions: &[Vec3]) -> Option<FarField> {
+impl Fields {
+    fn of(context: &mut Context<'_>, stress: &InSitu, solid: &Solid, positions: &[Vec3]) -> Option<Fields> {
+        let is_as_written = stress.is_as_written();
+        if !is_as_written {
+            let far = linear(context, stress.stress.as_ref()?, positions)?;
+            return Some(Fields { all: vec![far], of_body: vec![Some(0); solid.body_count()], is_as_written });
+        }
+        if context.case.is_first_stage() {
+            check_layers(context, stress, solid);
+        }
+        let (mut all, mut of_body) = (Vec::new(), vec![None; solid.body_count()]);
+        for field in stress.fields() {
+            let has = |body: &usize| stress.is_of(&solid.body(*body).name, field);
+            let bodies: Vec<usize> = bodies_there(context.case, solid).into_iter().filter(has).collect();
+            let nodes = bodies.iter().flat_map(|&body| solid.body(body).elements.iter().flatten());
+            let places: Vec<Vec3> = nodes.map(|&node| positions[node as usize]).collect();
+            if places.is_empty() {
+                continue; // all its bodies have left
+            }
+            bodies.into_iter().for_each(|body| of_body[body] = Some(all.len()));
+            all.push(linear(context, field, &places)?);
+        }
+        Some(Fields { all, of_body, is_as_written })
+    }
+
+    /// That of elastic bodies that share it.
+    fn far(&self) -> Option<&FarField> {
+        self.all.first().filter(|_| !self.is_as_written)
+    }
+}
+
+/// The stress as a linear function of the place.
+///
+/// - `positions`: places where it acts [m]
+fn linear(context: &mut Context<'_>, stress: &StressField, positions: &[Vec3]) -> Option<FarField> {
     let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     positions.iter().for_each(|p| (low, high) = (low.inf(p), high.sup(p)));
     let (centre, size) = ((low + high) * 0.5, high - low);
@@ -146,7 +183,7 @@ fn far_field(context: &mut Context<'_>, stress: &InSitu, positions: &[Vec3]) -> 
         off.0.iter().any(|c| c.is_nan()) || largest_of(off) > LINEAR * field.largest
     };
     if let Some(p) = positions.iter().find(bent) {
-        let found = format!(".stress is not linear in x, y, z near ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
+        let found = format!("is not linear in x, y, z near ({:.4e}, {:.4e}, {:.4e}) m", p.x, p.y, p.z);
         context.error(&stress.place, found, "finite components that grow in proportion to depth or not at all");
         return None;
     }
@@ -154,7 +191,7 @@ fn far_field(context: &mut Context<'_>, stress: &InSitu, positions: &[Vec3]) -> 
 }
 
 /// div σ + ρ g = 0, or nothing can be at rest.
-fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, solid: &Solid) {
+fn check_weight(context: &mut Context<'_>, stress: &InSitu, fields: &Fields, solid: &Solid) {
     let mut gravity = Vec3::zeros();
     for load in &context.case.loads {
         if let LoadKind::Gravity { acceleration } = &load.kind {
@@ -164,9 +201,10 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
         }
     }
     let axes = if solid.is_plane() { 2 } else { 3 };
-    let divergence = Vec3::from_fn(|a, _| (0..axes).map(|k| field.slope[k].to_matrix()[(a, k)]).sum::<f64>());
     let there = bodies_there(context.case, solid);
     for &body in &there {
+        let Some(field) = fields.of_body[body].map(|own| &fields.all[own]) else { continue };
+        let divergence = Vec3::from_fn(|a, _| (0..axes).map(|k| field.slope[k].to_matrix()[(a, k)]).sum::<f64>());
         let density = solid.body(body).elastic.density;
         let weight = gravity * density;
         let scale = field.largest / field.size.max() * BALANCE + BALANCE * weight.norm();
@@ -182,11 +220,14 @@ fn check_weight(context: &mut Context<'_>, place: &Place, field: &FarField, soli
         let is_one = there.iter().all(|&other| (solid.body(other).elastic.density / density - 1.0).abs() < BALANCE);
         let expected = if is_one {
             format!("gravity {name} = \"{fitting}\" among the loads, or a stress that goes with it")
+        } else if fields.is_as_written {
+            "a stress of this body that grows with its weight, and gravity among the loads".to_owned()
         } else {
-            "bodies of one density, since the stress is linear; or gravity in a first stage at rest, without [in_situ]"
+            "bodies of one density, since the stress is linear; or a stress of each body that goes with its weight, by in_situ.layers"
                 .to_owned()
         };
-        context.error(place, found, expected);
+        let own = stress.of(&solid.body(body).name);
+        context.error(own.map_or(&stress.place, |own| &own.place), found, expected);
         return;
     }
 }
@@ -359,10 +400,6 @@ fn rigid(place: Vec3, field: &FarField, axis: usize) -> Vector6<f64> {
     Vector6::new(along.x, along.y, along.z, turn(Vec3::x()), turn(Vec3::y()), turn(Vec3::z()))
 }
 
-fn largest_of(stress: Sym3) -> f64 {
-    stress.0.iter().map(|c| c.abs()).fold(0.0, f64::max)
-}
-
 impl FarField {
     fn at(&self, place: Vec3) -> Sym3 {
         let x = place - self.centre;
@@ -373,22 +410,7 @@ impl FarField {
     ///
     /// - `body`: one of the bodies, which are all of one material
     fn displacements(&self, body: &Body) -> impl Fn(Vec3) -> Vec3 + use<> {
-        let (e, nu) = (body.elastic.young_modulus, body.elastic.poisson_ratio);
-        let plane = (body.shape == ElementKind::T3).then_some(body.plane);
-        let beds = body.stiffness();
-        let strain = |stress: Sym3| -> Mat3 {
-            if let Some(beds) = &beds {
-                return strain_of_beds(beds, plane.is_some(), stress);
-            }
-            let mut sigma = stress.to_matrix();
-            if let Some(plane) = plane {
-                sigma = Mat3::new(sigma.m11, sigma.m12, 0.0, sigma.m12, sigma.m22, 0.0, 0.0, 0.0, 0.0);
-                if plane == Plane::Strain {
-                    sigma.m33 = nu * (sigma.m11 + sigma.m22);
-                }
-            }
-            (sigma * (1.0 + nu) - Mat3::identity() * (nu * sigma.trace())) / e
-        };
+        let strain = |stress: Sym3| strain_of(body, stress, false);
         let (constant, slope, centre) = (strain(self.stress), self.slope.map(strain), self.centre);
         move |place| {
             let x = place - centre;
@@ -401,21 +423,16 @@ impl FarField {
     }
 }
 
-/// Strain of a stress in a body with beds, of a plane one in its plane.
-fn strain_of_beds(beds: &Stiffness, in_plane: bool, stress: Sym3) -> Mat3 {
-    let counts = |i: usize| !in_plane || [0, 1, 3].contains(&i);
-    let unit = |i: usize, j: usize| if i == j { 1.0 } else { 0.0 };
-    let rows = Matrix6::from_fn(|i, j| if counts(i) && counts(j) { beds.rows()[i][j] } else { unit(i, j) });
-    let stress = Vector6::from_fn(|i, _| if counts(i) { stress.0[i] } else { 0.0 });
-    let strain = rows.lu().solve(&stress).unwrap_or_default();
-    // Shear strains of the rows are engineering ones.
-    Sym3(std::array::from_fn(|i| if i < 3 { strain[i] } else { 0.5 * strain[i] })).to_matrix()
-}
-
 /// Tractions σ n as forces on nodes: on every corner the integral of its share of a traction that is linear.
-fn tractions(field: &FarField, facets: &[[u32; 3]], surface: &Surface, positions: &[Vec3]) -> Vec<Load> {
+fn tractions(fields: &Fields, facets: &[[u32; 3]], surface: &Surface, solid: &Solid) -> Vec<Load> {
+    let with_a_stress: Vec<usize> = (0..fields.of_body.len()).filter(|&body| fields.of_body[body].is_some()).collect();
+    let behind = if fields.is_as_written { bodies_of_sides(solid, &with_a_stress) } else { HashMap::new() };
+    let positions = &solid.reference;
     let mut forces: Vec<(u32, Vec3)> = Vec::new();
     for facet in facets {
+        let own = behind.get(&sorted(*facet)).and_then(|&body| fields.of_body[body]);
+        // What comes in has no stress.
+        let Some(field) = fields.far().or(own.map(|own| &fields.all[own])) else { continue };
         let (area, corners) = (surface.area_vector(facet), surface.corners(facet));
         let count = corners.len() as f64;
         let at = |node: u32| field.at(positions[node as usize]).to_matrix() * area;

@@ -1,6 +1,6 @@
 //! Interfaces between elements: the mesh is cut along them before anything is built, and their faces go to the scene.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use fractum_fem::{ElementKind, Solid};
 use fractum_math::Vec3;
@@ -9,7 +9,7 @@ use fractum_output::number::quantity;
 use fractum_output::warning::Code;
 use fractum_scene::{CrackMeasure, InsidePressure, InterfaceFace, InterfaceKind, Interfaces, Scene, SpringInterface};
 
-use super::bodies::{Numbering, Part};
+use super::bodies::{Numbering, Part, element_nodes};
 use super::doubts::ZONES;
 use super::{Context, function};
 use crate::model::{Case, Interface, InterfaceFaces, Load, LoadKind, ProbeKind, SolverKind};
@@ -91,6 +91,7 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
     if context.mesh.cuts.is_empty() {
         return scene;
     }
+    check_installed(context, parts);
     let case = context.case;
     let owner = |element: u32| {
         let own =
@@ -135,6 +136,27 @@ pub(super) fn with_interfaces(context: &mut Context<'_>, scene: Scene, parts: &[
     });
     let interfaces = Interfaces::new(&scene.solid, kinds, faces).with_pressures(pressures.collect());
     scene.with_interfaces(interfaces)
+}
+
+/// The mesh is cut from the start, and with it what comes in later: interfaces must end before that.
+fn check_installed(context: &mut Context<'_>, parts: &[Part]) {
+    let (mesh, case) = (context.mesh, context.case);
+    let Some(excavation) = case.excavation.as_ref().filter(|_| case.is_first_stage()) else { return };
+    // Nodes that stand twice, with the interface that has doubled them.
+    let corners = mesh.cuts.iter().flat_map(|face| (0..3).map(|k| (face.cut, face.sides.map(|side| side[k]))));
+    let doubled: BTreeMap<u32, u32> =
+        corners.filter(|(_, [a, b])| a != b).flat_map(|(cut, pair)| pair.map(|node| (node, cut))).collect();
+    for part in parts.iter().filter(|part| excavation.to_come.iter().any(|name| name == part.name)) {
+        let mut nodes = element_nodes(context, part).into_iter().flatten();
+        let Some((node, cut)) = nodes.find_map(|node| Some((node, *doubled.get(&node)?))) else { continue };
+        let (interface, at) = (&case.interfaces[cut as usize], mesh.nodes[node as usize]);
+        let found = format!(
+            ": it cuts body \"{}\", which comes in later, at ({:.4e}, {:.4e}, {:.4e}) m",
+            part.name, at.x, at.y, at.z
+        );
+        let note = Diagnostic::error(&interface.place, found).expected("interfaces that end where such a body begins");
+        context.diagnostics.push(note.remedy("name the groups beside it alone, in mesh.joints[].within or in between"));
+    }
 }
 
 /// Whether some stage of a case is at rest.

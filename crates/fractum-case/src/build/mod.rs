@@ -21,6 +21,7 @@ mod holes;
 mod idle_doubts;
 mod in_situ;
 mod in_situ_doubts;
+mod in_situ_layers;
 mod inlets;
 mod inner_facets;
 mod interfaces;
@@ -402,11 +403,12 @@ impl<'a> Context<'a> {
             }
         }
         // Later stages begin with the state of those before.
-        if let Some(stress) = self.case.in_situ.as_ref().filter(|_| self.case.is_first_stage())
-            && let Err(error) = scene.start_at_rest()
-        {
-            self.error(&stress.place.clone(), format!(": {error}"), "");
-            return None;
+        if let Some(stress) = self.case.in_situ.as_ref().filter(|_| self.case.is_first_stage()) {
+            let as_written = in_situ_layers::begin_as_written(self.case, &mut scene.solid);
+            if let Err(error) = scene.start_at_rest(as_written) {
+                self.error(&stress.place.clone(), format!(": {error}"), "");
+                return None;
+            }
         }
         if self.exchange.is_none() && self.case.is_first_stage() {
             warnings.extend(in_situ::shared(self.case, &scene.solid));

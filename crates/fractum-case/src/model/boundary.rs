@@ -39,17 +39,60 @@ pub enum SurfaceSupport {
 pub struct InSitu {
     /// Where it stands in the case.
     pub place: Place,
-    /// Components xx, yy, zz, xy, yz, zx [Pa], tension positive; absent ones are zero.
-    pub stress: [Option<Spanned<Field>>; 6],
+    /// That of the far field; with layers that of all bodies in none of them, as it is written.
+    pub stress: Option<StressField>,
+    /// Bodies that have a stress of their own, as it is written.
+    pub layers: Vec<Layer>,
     /// Groups of facets on which it acts, besides those of absorbing and elastic supports.
     pub groups: Vec<Spanned<String>>,
 }
 
+/// Stress of some bodies before the run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layer {
+    /// Names of the bodies.
+    pub bodies: Vec<Spanned<String>>,
+    /// Their stress.
+    pub stress: StressField,
+}
+
+/// A stress by place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StressField {
+    /// Where it stands in the case.
+    pub place: Place,
+    /// Components xx, yy, zz, xy, yz, zx [Pa], tension positive; absent ones are zero.
+    pub components: [Option<Spanned<Field>>; 6],
+}
+
 impl InSitu {
+    /// Whether bodies have the stress as it is written, rather than what elastic bodies make of that of the far field.
+    pub fn is_as_written(&self) -> bool {
+        !self.layers.is_empty()
+    }
+
+    /// The stress that is asked for in a body; none where the case gives it none.
+    pub fn of(&self, body: &str) -> Option<&StressField> {
+        let own = self.layers.iter().find(|layer| layer.bodies.iter().any(|name| name.value == body));
+        own.map(|layer| &layer.stress).or(self.stress.as_ref())
+    }
+
+    /// Whether a body has one of [`InSitu::fields`].
+    pub fn is_of(&self, body: &str, field: &StressField) -> bool {
+        self.of(body).is_some_and(|own| std::ptr::eq(own, field))
+    }
+
+    /// All stresses of the case.
+    pub fn fields(&self) -> impl Iterator<Item = &StressField> {
+        self.stress.iter().chain(self.layers.iter().map(|layer| &layer.stress))
+    }
+}
+
+impl StressField {
     /// The stress at a place [Pa].
     pub fn at(&self, place: Vec3) -> Sym3 {
         let [xx, yy, zz, xy, yz, zx] =
-            [0, 1, 2, 3, 4, 5].map(|i: usize| self.stress[i].as_ref().map_or(0.0, |field| field.value.at(place)));
+            [0, 1, 2, 3, 4, 5].map(|i: usize| self.components[i].as_ref().map_or(0.0, |field| field.value.at(place)));
         Sym3::new(xx, yy, zz, xy, yz, zx)
     }
 }

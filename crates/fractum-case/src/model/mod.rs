@@ -39,7 +39,9 @@ use fractum_scene::EnergyKind;
 
 pub use body::{Body, BodyKind, SolidBody};
 pub use bonded::{BondFailure, BondedBody, BondedShape, Bonds, FileContent, PackingSource};
-pub use boundary::{Components, Detonation, InCracks, InSitu, Load, LoadKind, Motion, Support, SurfaceSupport};
+pub use boundary::{
+    Components, Detonation, InCracks, InSitu, Layer, Load, LoadKind, Motion, StressField, Support, SurfaceSupport,
+};
 pub use contact::ContactCoefficients;
 pub use contact_pair::ContactPair;
 pub use excavation::Excavation;

@@ -135,11 +135,6 @@ fn refuse_beside(reader: &Reader, cases: &[Case], place: &Place) {
     let expands = case.flows.heat.is_some() && installs;
     let beside = [
         (expands, "[heat] and with install", "bodies that are there from the start"),
-        (
-            installs && !case.interfaces.is_empty(),
-            "[[interfaces]] and with install",
-            "bodies that are there from the start",
-        ),
         (case.flows.gas.is_some(), "[gas]", "pressures as loads"),
     ];
     for (_, what, instead) in beside.into_iter().filter(|(there, ..)| *there) {

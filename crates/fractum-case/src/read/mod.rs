@@ -207,7 +207,7 @@ fn case(reader: &Reader, root: &Node, source: CaseSource, stage: String) -> Opti
     let mesh = mesh(&table, bodies.as_deref());
     let supports = boundary::supports(&table);
     let loads = boundary::loads(&table);
-    let in_situ = in_situ::read(&table);
+    let in_situ = in_situ::read(&table, bodies.as_deref());
     let excavation = excavation::read(&table);
     let damping = solver::damping(&table, bodies.as_deref(), !stage.is_empty());
     let probes = probes::read(&table);

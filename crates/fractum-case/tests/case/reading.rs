@@ -90,7 +90,7 @@ fn a_case_with_every_key_is_read_into_si() {
     assert_eq!(brick.fix_rotation.as_ref().unwrap().value, 0b111);
     assert_eq!(outer.surface.as_ref().unwrap().value, SurfaceSupport::Absorbing);
     assert_eq!(base.surface.as_ref().unwrap().value, SurfaceSupport::Elastic { normal: 1e9, tangential: 0.4e9 });
-    let stress = case.in_situ.as_ref().unwrap().at(Vec3::new(0.0, 16.0, 0.0));
+    let stress = case.in_situ.as_ref().unwrap().of("brick").unwrap().at(Vec3::new(0.0, 16.0, 0.0));
     assert_eq!(stress, Sym3::new(-2e6, -0.1e6, -3e6, 0.0, 0.0, 1e3));
 
     let BodyKind::Bonded(brick) = &case.bodies[3].kind else { panic!() };

@@ -31,7 +31,7 @@ pub(crate) struct Cells {
     pub(crate) runs: Vec<Run>,
     /// Thermal strains, where the body expands.
     pub(crate) thermal: Option<Box<ThermalStrain>>,
-    /// Strains at which the cells are free of stress, where the body came in during the run.
+    /// Strains at which the cells are free of stress, where the body came in during the run or has a stress of its own from the start.
     pub(crate) born: Option<Box<[Sym3]>>,
 }
 
@@ -66,7 +66,7 @@ fn local_lanes() -> LocalLanes {
 }
 
 impl Cells {
-    /// Strain of a cell that stress belongs to: beyond the thermal one, and beyond that at which it came in.
+    /// Strain of a cell that stress belongs to: beyond the thermal one, and beyond that at which it is free of stress.
     #[inline(always)]
     pub(crate) fn elastic_strain(&self, cell: usize, strain: Sym3) -> Sym3 {
         let strain = self.since_birth(cell, strain);

@@ -1,4 +1,4 @@
-//! Laws of cells: stress by strain. Wrappers see the strain beyond the thermal one, or since a cell came in.
+//! Laws of cells: stress by strain. Wrappers see the strain beyond the thermal one, or beyond that at which a cell is free of stress.
 
 use fractum_math::{FOUR, Sym3};
 
@@ -73,6 +73,7 @@ impl<L> ExpandingCells<'_, L> {
 impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
     const BY_FOURS: bool = L::BY_FOURS;
     const IS_COAXIAL: bool = L::IS_COAXIAL;
+    const IS_RARE: bool = L::IS_RARE;
 
     #[inline(always)]
     fn scaled_stress(&mut self, cell: usize, strain: Sym3, volume: f64) -> Sym3 {
@@ -100,10 +101,10 @@ impl<L: CellLaw> CellLaw for ExpandingCells<'_, L> {
     }
 }
 
-/// The law of cells that came in during the run: it sees the strain since then.
+/// The law of cells that are free of stress at a strain of their own: it sees the strain beyond that.
 pub(crate) struct BornCells<'a, L> {
     pub(crate) law: &'a mut L,
-    /// Strain of each cell as it came in.
+    /// That strain of each cell.
     pub(crate) born: &'a [Sym3],
 }
 

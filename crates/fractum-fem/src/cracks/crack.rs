@@ -10,6 +10,9 @@ use crate::fields::element_fields::cells_with;
 use crate::motion::phase_damage::element_phase;
 use crate::solid::Solid;
 
+/// Damage of an edge beyond which an element that is gone was cut or crushed.
+const CUT: f64 = 0.5;
+
 /// How far the damage of a solid has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fracture {
@@ -212,14 +215,18 @@ pub fn size_along_cracks(solid: &Solid, body: usize) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-/// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field.
+/// Share of its volume that a body with a phase field has lost to its cracks, and the width π b of a band [m]; none without a phase field. Elements that were
+/// taken out whole are no cracks.
 pub fn lost_to_bands(solid: &Solid, body: usize) -> Option<(f64, f64)> {
     let model = &solid.bodies[body];
     let field = model.phase.as_ref()?;
+    let edges = model.edges.as_ref()?;
+    let is_damaged = |edge: &u32| solid.edge(body, *edge).is_some_and(|(field, at)| field.history(at).damage > CUT);
+    let is_cut = |element| edges.of_element(element)[..model.body.shape.edge_count()].iter().any(is_damaged);
     let (mut whole, mut lost) = (0.0, 0.0);
-    for (volume, alive) in solid.element_volumes(body).iter().zip(&model.alive) {
+    for ((element, volume), alive) in (0..).zip(solid.element_volumes(body)).zip(&model.alive) {
         whole += volume;
-        lost += if *alive { 0.0 } else { *volume };
+        lost += if *alive || !is_cut(element) { 0.0 } else { *volume };
     }
     Some((lost / whole, std::f64::consts::PI * field.law.length))
 }
@@ -231,6 +238,7 @@ mod tests {
 
     use super::*;
     use crate::body::{Body, ElementKind, Regularisation};
+    use crate::removal::take_out_body;
 
     fn at(x: f64, y: f64, z: f64) -> (Vec3, f64) {
         (Vec3::new(x, y, z), 1.0)
@@ -281,6 +289,19 @@ mod tests {
         let sheared = cost_of_a_band(Vec3::x() * 2.0);
         assert!((sheared / open - 2.0).abs() < 1e-6, "{sheared} {open}");
         assert!(open > 0.5 && open < 1.15, "{open}");
+    }
+
+    #[test]
+    fn a_body_that_is_taken_out_has_lost_nothing_to_cracks() {
+        let mesh = structured_rectangle([3, 3], [0.03, 0.03], None);
+        let elastic = Elastic { density: 2400.0, young_modulus: 30e9, poisson_ratio: 0.2 };
+        let elements = mesh.triangles.iter().map(|t| [t[0], t[1], t[2], t[2]]).collect();
+        let law = DamageLaw::rankine(3e6, 100.0);
+        let mut body = Body::new("core", ElementKind::T3, elements, elastic).smoothed().with_damage(law);
+        body.damage.as_mut().unwrap().regularisation = Some(Regularisation { length: None });
+        let mut solid = Solid::new(mesh.nodes, vec![body]).unwrap();
+        take_out_body(&mut solid, 0.0, 0);
+        assert_eq!(lost_to_bands(&solid, 0).unwrap().0, 0.0);
     }
 
     #[test]

@@ -1,8 +1,9 @@
-//! What a step in motion does with a solid: internal forces, time integration, stable step, growth of phase fields, viscosity, expansion, and bodies that
-//! begin to turn.
+//! What a step in motion does with a solid: internal forces, time integration, stable step, growth of phase fields, viscosity, expansion, stress from the start, and
+//! bodies that begin to turn.
 
 pub(crate) mod central_difference;
 pub(crate) mod expansion;
+pub(crate) mod initial_stress;
 pub(crate) mod internal_forces;
 pub(crate) mod inverted;
 pub(crate) mod phase_damage;
@@ -17,6 +18,7 @@ pub use expansion::{
     begin_expansion, element_conduction, expand_to, expansion_work, find_expansion_work, set_expansion, start_expanded,
     starting_work,
 };
+pub use initial_stress::{begin_strained, stressed_areas};
 pub use inverted::{crushed_element, inverted_element};
 pub use phase_damage::{element_phase, has_phase_fields, phase_sizes};
 pub use phase_edges::wake_phase_fields;

@@ -112,7 +112,7 @@ fn become_corotational(solid: &mut Solid, found: Vec<u32>, dt: f64, turning: &mu
     before - after
 }
 
-/// Has the strains at which the cells of a body came in be those of corotational strains: what they had turned by then is no stress.
+/// Has the strains at which the cells of a body are free of stress be those of corotational strains: what they had turned by then is no stress.
 fn turn_births(solid: &mut Solid, body: usize) {
     let Solid { blocks, displacement, .. } = solid;
     for Block { cells, .. } in blocks.iter_mut().filter(|block| block.body == body) {

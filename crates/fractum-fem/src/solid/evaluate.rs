@@ -273,8 +273,8 @@ fn run_elastic<L: Linear>(
     (outcome, law.energy)
 }
 
-/// Runs the cells with the law, beyond their thermal strains and those at which they came in where they have some; see [`run_law`]. Returns the work
-/// of the present change of temperatures too [J].
+/// Runs the cells with the law, beyond their thermal strains and those at which they are free of stress where they have some; see [`run_law`]. Returns the
+/// work of the present change of temperatures too [J].
 fn run<L: CellLaw>(
     model: &BodyModel,
     cells: &Cells,
@@ -282,11 +282,22 @@ fn run<L: CellLaw>(
     law: &mut L,
     viscous: &mut ViscousCells,
 ) -> (f64, Option<usize>, f64) {
+    match &cells.born {
+        None => run_expanding(model, cells, scratch, law, viscous),
+        Some(born) => run_expanding(model, cells, scratch, &mut BornCells { law, born }, viscous),
+    }
+}
+
+/// The same, beyond their thermal strains where they have some.
+fn run_expanding<L: CellLaw>(
+    model: &BodyModel,
+    cells: &Cells,
+    scratch: &mut Scratch,
+    law: &mut L,
+    viscous: &mut ViscousCells,
+) -> (f64, Option<usize>, f64) {
     let Some(thermal) = &cells.thermal else {
-        let (power, inverted) = match &cells.born {
-            None => run_law(model, cells, scratch, law, viscous),
-            Some(born) => run_law(model, cells, scratch, &mut BornCells { law, born }, viscous),
-        };
+        let (power, inverted) = run_law(model, cells, scratch, law, viscous);
         return (power, inverted, 0.0);
     };
     let mut expanding = ExpandingCells { law, thermal, work: 0.0 };

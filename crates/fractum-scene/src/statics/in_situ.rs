@@ -1,6 +1,7 @@
 //! Equilibrium before motion: the state of rock under in-situ stress, from which a run begins.
 
-use fractum_math::{Mat3, Vec3};
+use fractum_fem::{Solid, motion};
+use fractum_math::{Mat3, Vec3, connected};
 
 use super::contact::Spring;
 use super::linear_system::LinearSystem;
@@ -16,6 +17,8 @@ use crate::scene::Scene;
 const TOLERANCES: [f64; 2] = [1e-12, 1e-10];
 /// Solutions with the stiffness of the unloaded state: one where strains are small, a few where elements turn.
 const MOST_SOLUTIONS: usize = 30;
+/// Force that stress as it is written may leave on a node, over what the largest stress does on the areas around it.
+const UNEVEN: f64 = 1e-6;
 /// Force on what only keeps the solids from moving as rigid bodies, over all forces, above which loads do not balance.
 const UNBALANCED: f64 = 1e-6;
 /// The same over the displacement across the solids.
@@ -27,9 +30,12 @@ impl Scene {
     /// Rigid motions that no support prevents are left out: loads in balance need nothing to hold them. What supports hold stays at the
     /// displacement that it has: that of the far field, where they could not follow it.
     ///
+    /// - `as_written`: largest component of the stress that bodies have without a displacement [Pa], which must be in equilibrium; none where
+    ///   the loads make the stress
+    ///
     /// # Errors
-    /// [`SceneError::InSituUnbalanced`], [`SceneError::InSituBreaks`] and [`SceneError::InSituUnsolved`].
-    pub fn start_at_rest(&mut self) -> Result<(), SceneError> {
+    /// [`SceneError::InSituUnbalanced`], [`SceneError::InSituUneven`], [`SceneError::InSituBreaks`] and [`SceneError::InSituUnsolved`].
+    pub fn start_at_rest(&mut self, as_written: Option<f64>) -> Result<(), SceneError> {
         let unsolved = |reason: String| SceneError::InSituUnsolved { reason };
         let firm = self.interfaces().firm_springs(&self.solid);
         let joined: Vec<[u32; 2]> = firm.iter().map(|(pair, _)| *pair).collect();
@@ -40,6 +46,12 @@ impl Scene {
         let springs: Vec<Spring> = firm.iter().map(spring).collect();
         system.prepare(self, &self.solid.cell_damage(), &springs).map_err(|error| unsolved(error.to_string()))?;
         let mut change = vec![Vec3::zeros(); self.solid.reference.len()];
+        if let Some(largest) = as_written {
+            // Before the forces, in which edges over their strength would be damaged.
+            check_strength(self)?;
+            forces_at_start(self, &held, &firm);
+            check_evenness(&self.solid, self.supports.held(), &joined, largest)?;
+        }
         for _ in 0..MOST_SOLUTIONS {
             let (missing, scale) = forces_at_start(self, &held, &firm);
             if missing <= TOLERANCES[1] * scale {
@@ -99,6 +111,39 @@ fn forces_at_start(scene: &mut Scene, held: &[u8], firm: &[([u32; 2], f64)]) -> 
     }
     // Supports alone may bear the stress.
     (f64::sqrt(missing), f64::sqrt(f64::max(loads, reactions)))
+}
+
+/// Forces of stress as it is written, and of all else that acts at t = 0, must be none wherever no support holds.
+///
+/// - `joined`: pairs of nodes on both sides of interfaces, whose forces are taken together
+fn check_evenness(solid: &Solid, held: &[u8], joined: &[[u32; 2]], largest: f64) -> Result<(), SceneError> {
+    let first = connected(solid.reference.len(), joined.iter().copied());
+    let (mut forces, mut bits) = (vec![Vec3::zeros(); first.len()], vec![0u8; first.len()]);
+    let mut areas = vec![0.0; first.len()];
+    for (node, (&first, area)) in first.iter().zip(motion::stressed_areas(solid)).enumerate() {
+        let first = first as usize;
+        forces[first] += solid.force[node];
+        areas[first] += area;
+        bits[first] |= held.get(node).copied().unwrap_or(0);
+    }
+    let share = |node: usize| {
+        let free = Vec3::from_fn(|axis, _| if bits[node] & (1 << axis) == 0 { forces[node][axis] } else { 0.0 });
+        let force = free.norm();
+        (force, if force > 0.0 { force / (largest * areas[node]) } else { 0.0 })
+    };
+    let all = (0..first.len()).map(|node| (node, share(node)));
+    let Some((node, (force, share))) = all.max_by(|a, b| a.1.1.total_cmp(&b.1.1)) else { return Ok(()) };
+    if share <= UNEVEN {
+        return Ok(());
+    }
+    let has = |body: &usize| {
+        let alive = solid.body(*body).elements.iter().zip(solid.alive(*body)).filter(|(_, alive)| **alive);
+        alive.into_iter().flat_map(|(nodes, _)| nodes).any(|&other| first[other as usize] as usize == node)
+    };
+    let bodies: Vec<String> =
+        (0..solid.body_count()).filter(has).map(|body| format!("\"{}\"", solid.body(body).name)).collect();
+    let [x, y, z] = solid.reference[node].into();
+    Err(SceneError::InSituUneven { x, y, z, bodies: bodies.join(" and "), force, share })
 }
 
 /// What only keeps the solids in place must carry nothing, but for the moment that forces on elements that turn get as
