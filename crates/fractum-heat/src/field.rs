@@ -48,6 +48,7 @@ impl HeatField {
     ) -> Self {
         let count = network.len();
         let (mut held, mut exchange) = (vec![false; count], vec![0.0; count]);
+        let start = temperature.clone();
         for condition in &conditions {
             match condition {
                 HeatCondition::Temperature { points, value } => points.iter().for_each(|&i| {
@@ -60,9 +61,12 @@ impl HeatField {
                 HeatCondition::Supply { .. } => {}
             }
         }
+        // A prescribed temperature other than that of the start brings its heat at once.
+        let risen = |i: usize| network.capacity()[i] * (temperature[i] - start[i]);
+        let ledger = HeatLedger { held: sum_chunks(count, risen), ..HeatLedger::default() };
         HeatField {
             flow: vec![0.0; count],
-            start: temperature.clone(),
+            start,
             network,
             places,
             conditions,
@@ -70,7 +74,7 @@ impl HeatField {
             exchange,
             temperature,
             time: 0.0,
-            ledger: HeatLedger::default(),
+            ledger,
         }
     }
 
@@ -275,6 +279,25 @@ mod tests {
         }
         for (a, b) in explicit.temperature().iter().zip(implicit.temperature()) {
             assert!((a - b).abs() < 0.05, "{a} {b}");
+        }
+    }
+
+    /// A bar that is brought from 300 to 400 K takes C ΔT, however the end that brings it there gets its own temperature.
+    #[test]
+    fn a_temperature_that_leaps_at_the_start_brings_the_heat_of_its_points() {
+        for implicit in [false, true] {
+            let mut field = bar(4, Some(400.0));
+            field.exchange.fill(0.0);
+            field.conditions = vec![HeatCondition::Temperature { points: vec![0], value: Arc::new(|_, _| 400.0) }];
+            let (dt, mut solver) = (0.5 * field.stable_step(), ImplicitHeat::default());
+            for step in 1..=1000 {
+                match implicit {
+                    true => field.step_implicitly(&mut solver, f64::from(step) * dt).unwrap(),
+                    false => field.step(dt),
+                }
+            }
+            let HeatLedger { stored, held, .. } = field.ledger();
+            assert!((stored - 800.0).abs() < 1e-6 && (held - 800.0).abs() < 1e-6, "{stored} {held}");
         }
     }
 

@@ -85,6 +85,7 @@ pub use measure::crack_extent::CrackProbe;
 pub use measure::crack_measure::{CrackMeasure, InsideCracks};
 pub use measure::damaged::{DamagedMeasure, DamagedPart};
 pub use measure::gauges::{Extensometer, GaugeGrid, GaugeReading};
+pub use measure::indentation::{Indentation, coarsest_indentation};
 pub use measure::piece_probe::{
     FragmentMeasure, FragmentProbe, SurfaceMeasure, SurfaceProbe, equivalent_diameter, fragment_size, passing_size,
 };

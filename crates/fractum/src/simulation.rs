@@ -1,6 +1,7 @@
 //! One run that can be driven step by step.
 
 mod audit;
+mod coarse;
 mod crack_energy;
 mod damaged;
 mod drive;

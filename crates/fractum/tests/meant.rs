@@ -67,7 +67,7 @@ fn cases() -> BTreeMap<&'static str, String> {
     let ball = "[[bodies]]\nname = \"ball\"\nkind = \"rigid\"\nshape = \"sphere\"\npoint = [\"20 cm\", \"141 mm\", \"6 cm\"]\nradius = \"20 mm\"\nvelocity = { y = \"-1 m/s\" }\n";
     let heat = "[materials.stone.thermal]\nconductivity = \"3 W/(m K)\"\nheat_capacity = \"800 J/(kg K)\"\n[[bodies]]";
     let conditions = "[heat]\ninitial_temperature = \"300 K\"\n[[heat.conditions]]\ngroup = \"x+\"\ntemperature = \"400 K\"\n[solver]";
-    let heated = replaced("", "kind = \"heat\"\nend = \"1000 s\"").replacen("[[bodies]]", heat, 1);
+    let heated = replaced("", "kind = \"heat\"\nend = \"5000 s\"").replacen("[[bodies]]", heat, 1);
     let heated = heated.replace("[[supports]]\ngroup = \"x-\"\nfix = \"xyz\"\n", "").replace("[solver]", conditions);
     BTreeMap::from([
         ("broken", broken),

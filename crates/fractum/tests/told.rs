@@ -4,8 +4,8 @@ use std::fs;
 
 use fractum::{Options, Simulation};
 use fractum_math::Vec3;
-use fractum_mesh::MshFormat;
 use fractum_mesh::generate::{structured_box, structured_rectangle};
+use fractum_mesh::{Group, MshFormat};
 
 use crate::common::{BONDED_BAR, Workplace, bar, history, mesh_bytes, run, summary};
 use crate::warnings::{BAR, listed};
@@ -417,5 +417,125 @@ fn cracks_that_do_not_cost_their_fracture_energy_are_told() {
                 assert!(found == code && text.contains(first) && text.contains(second), "{all:?}");
             }
         }
+    }
+}
+
+/// A rigid ball that is pressed into a block by 50 um.
+const PRESSED_BALL: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[parameters]
+R = "4 m"
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.3
+[[bodies]]
+name = "block"
+kind = "solid"
+group = "body"
+material = "stone"
+formulation = "smoothed"
+[[bodies]]
+name = "ball"
+kind = "rigid"
+shape = "sphere"
+point = ["20 mm", "20 mm", "R + 20 mm"]
+radius = "R"
+velocity = { z = "-50 mm/s" }
+[[supports]]
+group = "z-"
+fix = "xyz"
+[solver]
+kind = "static"
+end = "1 ms"
+"#;
+
+/// One node of a mesh gave 1.2 to 3.6 times the force of Hertz, without a word.
+#[test]
+fn a_ball_that_presses_on_few_nodes_is_told() {
+    let mesh = mesh_bytes(&structured_box([8, 8, 4], Vec3::new(0.04, 0.04, 0.02), None), MshFormat::V4_1Binary);
+    for (radius, kind, told) in [("4 m", "static", false), ("0.1 m", "static", true), ("0.1 m", "explicit", true)] {
+        let case =
+            PRESSED_BALL.replace("\"4 m\"", &format!("\"{radius}\"")).replace("\"static\"", &format!("\"{kind}\""));
+        let place = Workplace::with_mesh(&case, &mesh);
+        run(&place, "out", "1");
+        let found = listed(&place, "out").into_iter().filter(|[code, ..]| code == "coarse-mesh").collect::<Vec<_>>();
+        assert_eq!(found.len(), usize::from(told), "{radius}, {kind}: {found:?}");
+        for [_, site, text] in found {
+            assert!(site == "body \"block\"" && text.contains("\"ball\" presses on 1 node of \"block\""), "{text}");
+        }
+    }
+    // A thin plate on its rim bends, and how it gives way beside the ball counts for little.
+    let plate = mesh_bytes(&structured_box([8, 8, 3], Vec3::new(0.04, 0.04, 0.002), None), MshFormat::V4_1Binary);
+    let case = PRESSED_BALL.replace("\"4 m\"", "\"5 mm\"").replace("R + 20 mm", "R + 2 mm");
+    let case = case.replace("group = \"z-\"", "where = \"x < 0.1 mm || x > 39.9 mm\"");
+    let place = Workplace::with_mesh(&case, &plate);
+    run(&place, "out", "1");
+    assert!(!listed(&place, "out").iter().any(|[code, ..]| code == "coarse-mesh"), "{:?}", listed(&place, "out"));
+}
+
+/// Two halves of a bar whose elastic energy at the peak is that of their face.
+const SNAPS_BACK: &str = r#"fractum = 1
+mesh = { file = "bar.msh" }
+[materials.stone]
+density = "2400 kg/m^3"
+young_modulus = "30 GPa"
+poisson_ratio = 0.2
+[[bodies]]
+name = "left"
+kind = "solid"
+group = "left"
+material = "stone"
+[[bodies]]
+name = "right"
+kind = "solid"
+group = "right"
+material = "stone"
+[[interfaces]]
+between = ["left", "right"]
+tensile_strength = "3 MPa"
+fracture_energy = "30 J/m^2"
+[[supports]]
+group = "x-"
+fix = "x"
+[[supports]]
+group = "y-"
+fix = "y"
+[[supports]]
+group = "z-"
+fix = "z"
+[[supports]]
+group = "x+"
+displacement = { x = "40 um*t/1 ms" }
+[solver]
+kind = "static"
+end = "1 ms"
+control = "time"
+step = "0.5 ms"
+"#;
+
+/// A step of time went from the peak to two parted halves, and booked the energy that they set free as fracture, without a word.
+#[test]
+fn a_step_over_a_snap_back_is_told() {
+    let mut mesh = structured_box([8, 2, 2], Vec3::new(0.2, 0.02, 0.02), None);
+    let middle = |nodes: &[u32; 4]| nodes.iter().map(|&n| mesh.nodes[n as usize].x).sum::<f64>() / 4.0;
+    let halves: Vec<Vec<u32>> = [true, false]
+        .map(|left| {
+            (0u32..).zip(&mesh.tetrahedra).filter(|(_, n)| (middle(n) < 0.1) == left).map(|own| own.0).collect()
+        })
+        .into();
+    for (tag, (name, tetrahedra)) in (20..).zip(["left", "right"].into_iter().zip(halves)) {
+        mesh.groups.push(Group { name: name.into(), dimension: 3, tag, tetrahedra, ..Group::default() });
+    }
+    let mesh = mesh_bytes(&mesh, MshFormat::V4_1Binary);
+    for (control, told) in [("control = \"time\"\nstep = \"0.5 ms\"", true), ("control = \"path\"", false)] {
+        let case = SNAPS_BACK.replace("control = \"time\"\nstep = \"0.5 ms\"", control);
+        let place = Workplace::with_mesh(&case, &mesh);
+        let ended = run(&place, "out", "1");
+        let taken = ended["energy"]["interface_fracture"].as_f64().unwrap() / (30.0 * 4e-4);
+        assert!((taken - if told { 2.0 } else { 1.0 }).abs() < 2e-3, "{taken}");
+        let found = listed(&place, "out").into_iter().filter(|[code, ..]| code == "crack-energy").collect::<Vec<_>>();
+        assert_eq!(found.len(), usize::from(told), "{control}: {found:?}");
+        assert!(found.iter().all(|[_, _, text]| text.contains("2.00 times the fracture energy")), "{found:?}");
     }
 }

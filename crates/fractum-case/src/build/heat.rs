@@ -8,7 +8,8 @@ use fractum_scene::{Heat, HeatCondition, HeatSettings, Scene, ThermalMaterial};
 
 use super::bodies::{Numbering, Part};
 use super::conditions::{LoadedPoints, Surface};
-use super::{Context, function};
+use super::{Context, function, heat_doubts};
+use crate::Diagnostic;
 use crate::model::{self, BodyKind, HeatKind, HeatScheme, SolverKind};
 
 /// Least number of steps of conduction in a run that gives none.
@@ -21,6 +22,7 @@ pub(super) fn with_heat(
     parts: &[Part],
     numbering: &Numbering,
     surface: &Surface,
+    warnings: &mut Vec<Diagnostic>,
 ) -> Option<Scene> {
     let case = context.case;
     let Some(heat) = &case.flows.heat else { return Some(scene) };
@@ -46,6 +48,11 @@ pub(super) fn with_heat(
         context.error(&heat.initial.place, "depends on the position", expected);
     }
     context.without_mistakes()?;
+    if context.division.is_none() {
+        let made = conditions.iter().enumerate();
+        warnings.extend(made.filter_map(|(index, made)| heat_doubts::front(case, heat, index, made, &scene)));
+        warnings.extend(heat_doubts::long_steps(case, heat, &scene));
+    }
     let initial = heat.initial.value.clone();
     let settings = HeatSettings {
         solids,

@@ -17,6 +17,7 @@ mod excavation;
 mod gas;
 mod gauges;
 mod heat;
+mod heat_doubts;
 mod holes;
 mod idle_doubts;
 mod in_situ;
@@ -290,7 +291,7 @@ impl<'a> Context<'a> {
             &tied,
             &mut warnings,
         )?;
-        let scene = heat::with_heat(self, scene, &parts, &numbering, &surface)?;
+        let scene = heat::with_heat(self, scene, &parts, &numbering, &surface, &mut warnings)?;
         let scene = excavation::with_excavation(self.case, scene, &parts);
         let scene = self.made_ready(scene, &probes, &mut warnings)?;
         Some(BuiltScene {

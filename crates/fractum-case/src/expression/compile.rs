@@ -240,6 +240,7 @@ impl<'t> Compiler<'t, '_> {
             }
         }
         self.expect("(")?;
+        let start = self.code.len();
         let mut arguments = vec![self.expression(0)?];
         while self.peek().kind == Kind::Symbol(",") {
             self.at += 1;
@@ -266,6 +267,9 @@ impl<'t> Compiler<'t, '_> {
                 Err(error.remedy(format!("write it as {usage}; a probe of its own may hold an expression")))
             }
             [a] if let Some(function) = find::<Unary>(name) => {
+                if matches!(function, Unary::Sin | Unary::Cos | Unary::Tan) && a == Type::BARE {
+                    refuse_degrees(name, &self.code[start..], offset)?;
+                }
                 self.code.push(Op::Unary(function));
                 self.rules.unary(function, a, offset)
             }
@@ -311,6 +315,20 @@ impl<'t> Compiler<'t, '_> {
 /// The function of this name; operators, whose names are symbols, are none.
 fn find<T: Choice>(name: &str) -> Option<T> {
     T::NAMES.iter().find(|(known, _)| *known == name).map(|(_, function)| *function)
+}
+
+/// A number without a unit that is no angle in radians: `sin(30)`.
+fn refuse_degrees(name: &str, argument: &[Op], offset: usize) -> Result<()> {
+    if argument.contains(&Op::Constant(std::f64::consts::PI)) {
+        return Ok(());
+    }
+    match Program::new(argument.to_vec()).and_then(|program| program.constant()) {
+        Some(angle) if angle.abs() > std::f64::consts::TAU * (1.0 + 1e-9) => {
+            let error = ExpressionError::new(offset, format!("{name}() of {angle} radians, which is more than a turn"));
+            Err(error.remedy(format!("write {name}({angle} deg), or {name}({angle} rad) where radians are meant")))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn folding(name: &str) -> Option<Binary> {
@@ -441,6 +459,10 @@ mod tests {
         assert_eq!(message("x + t"), "a length and a time cannot be added or compared");
         assert_eq!(message("x < 3 ms"), "a length and a time cannot be added or compared");
         assert_eq!(message("exp(t)"), "exp() of a time");
+        assert_eq!(message("E*sin(30)"), "sin() of 30 radians, which is more than a turn");
+        assert_eq!(message("cos(-360/2)"), "cos() of -180 radians, which is more than a turn");
+        let found = value("sin(30 deg) + cos(10 rad) - sin(6) + cos(9*pi) - tan(200*x/1 m)");
+        assert!((found - (0.5 + 10f64.cos() - 6f64.sin() - 1.0 - 60f64.tan())).abs() < 1e-9, "{found}");
         assert_eq!(message("2^x"), "an exponent must be a pure number, not a length");
         assert_eq!(message("x^f"), "a length can be raised to a constant power only");
         assert_eq!(message("x^0.3"), "the units of this have no meaning");

@@ -98,3 +98,49 @@ fn heat_beside_a_bond_flows_in_time() {
     let cold = cold.replace("heat_transfer = \"100 W/(m^2 K)\"\n", "");
     assert_eq!(bar_of_two_parts(&cold), Ok(Some(Control::TimeThenPath)));
 }
+
+/// Heat that goes 3.6 mm deep in a second, on elements of 50 mm, was told to be taken up at a third of what it is, without a word.
+#[test]
+fn fronts_thinner_than_elements_and_few_long_steps_are_told() {
+    let mesh = structured_box([8, 2, 2], Vec3::new(0.4, 0.1, 0.1), None);
+    let told = |condition: &str, end: &str, heat: &str| {
+        let case = HEATED.replace("\"1 s\"", end).replace("[solver]", &format!("{heat}\n[solver]"));
+        let case = format!("{case}[[heat.conditions]]\n{condition}\n");
+        build(&case, &mesh).warnings.iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    for condition in ["temperature = \"400 K\"", "flux = \"1 kW/m^2\"", "power = \"1 W\"", CONVECTION] {
+        let on = format!("group = \"x-\"\n{condition}");
+        let short = told(&on, "\"1 s\"", "");
+        let [one] = short.as_slice() else { panic!("{condition}: {short:?}") };
+        assert!(
+            one.contains("3.581 mm deep") && one.contains("50 mm thick") && one.ends_with("[coarse-mesh]"),
+            "{one}"
+        );
+        // It has gone 0.11 m deep then, through more than two elements.
+        assert_eq!(told(&on, "\"1000 s\"", ""), [""; 0], "{condition}");
+    }
+    // What changes nothing has no front, nor has what heats a body as a whole.
+    for quiet in [
+        "group = \"x-\"\ntemperature = \"300 K\"",
+        "group = \"x-\"\nflux = \"0 W/m^2\"",
+        "group = \"body\"\npower = \"1 W\"",
+        "group = \"body\"\ntemperature = \"400 K\"",
+        "group = \"body\"\nsource = \"1 MW/m^3\"",
+    ] {
+        assert_eq!(told(quiet, "\"1 s\"", ""), [""; 0], "{quiet}");
+    }
+    let steps = |step: &str, end: &str| {
+        let heat = format!("scheme = \"implicit\"\nstep = \"{step}\"");
+        told("group = \"x-\"\nflux = \"1 kW/m^2\"", end, &heat)
+    };
+    let [few] = steps("250 s", "\"1000 s\"").try_into().unwrap();
+    assert!(
+        few.contains("4 steps in the run") && few.contains("at most 100 s") && few.ends_with("[time-step]"),
+        "{few}"
+    );
+    assert_eq!(steps("100 s", "\"1000 s\""), [""; 0]);
+    // Its end does not depend on how it came there.
+    assert_eq!(steps("25000 s", "\"100000 s\""), [""; 0]);
+}
+
+const CONVECTION: &str = "convection = { coefficient = \"50 W/(m^2 K)\", ambient = \"400 K\" }";

@@ -9,6 +9,8 @@ use super::{InterfaceFace, InterfaceKind, Interfaces, Point};
 
 /// Share of the strength that is left where an interface counts as broken.
 const BROKEN: f64 = 0.02;
+/// Shares of sliding at which the energy of a law is looked at.
+const SHARES: u32 = 20;
 /// Opening over the length of a face up to which sides that nothing joins touch.
 const TOUCHING: f64 = 1e-6;
 
@@ -135,6 +137,17 @@ impl Interfaces {
     pub(crate) fn links(&self, joined_below: f64) -> impl Iterator<Item = [u32; 2]> {
         let holds = move |point: &&Point| point.area > 0.0 && point.state.residual > 1.0 - joined_below;
         self.clusters.iter().flat_map(|cluster| &cluster.points).filter(holds).map(|point| point.pair)
+    }
+
+    /// The most that their fracture can take by now: the largest energy of each law over the area that has begun to break [J].
+    pub fn largest_fracture(&self) -> f64 {
+        let points = self.clusters.iter().flat_map(|cluster| &cluster.points);
+        let largest = |kind: &InterfaceKind| {
+            let of = |share: u32| kind.law.energy(f64::from(share) / f64::from(SHARES));
+            if kind.law.is_bonded() { (0..=SHARES).map(of).fold(0.0, f64::max) } else { 0.0 }
+        };
+        let largest: Vec<f64> = self.kinds.iter().map(largest).collect();
+        points.filter(|point| point.state.residual < 1.0).map(|point| point.area * largest[point.kind as usize]).sum()
     }
 
     /// Energy stored in them [J].

@@ -6,6 +6,7 @@ pub(crate) mod crack_extent;
 pub(crate) mod crack_measure;
 pub(crate) mod damaged;
 pub(crate) mod gauges;
+pub(crate) mod indentation;
 mod momentum;
 pub(crate) mod piece_probe;
 pub(crate) mod points;

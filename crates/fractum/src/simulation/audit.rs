@@ -10,7 +10,8 @@ use fractum_output::summary::LargestOverlap;
 use fractum_output::warning::{Code, Warning};
 use fractum_scene::{Notice, Noticed, Scene, Site};
 
-use super::crack_energy::crack_energy;
+use super::coarse::{coarse_crack, coarse_indentation};
+use super::crack_energy::{crack_energy, jumped_snap_back};
 use super::messages::at;
 use super::{End, Simulation};
 use crate::error::Failure;
@@ -108,7 +109,11 @@ impl Simulation {
         self.warn_of_merged_bands()?;
         self.warn_of_cut_bands()?;
         crack_energy(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
+        if self.solver.rests() {
+            jumped_snap_back(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
+        }
         coarse_crack(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
+        coarse_indentation(&self.scene).into_iter().try_for_each(|found| self.warn(found))?;
         self.tell_rates()?;
         self.warn_of_idle_stop()?;
         self.warn_of_giving_way()?;
@@ -360,37 +365,11 @@ impl Simulation {
 const LEAST_SIZES: f64 = 1.5;
 /// Energy of damage over the fracture energy of the cracks above which bands do more than open: where they open it is at most 1.1.
 const SHEARED: f64 = 1.3;
-/// Part of its volume by which a crack along an interface may open too little before it is told, and that to which the remedy brings it.
-const OPENS_TOO_LITTLE: f64 = 0.1;
-const AS_IT_SHOULD: f64 = 0.05;
 /// Share of the damage of a phase field at the nodes of other bodies above which its cracks run along them.
 const AT_BORDERS: f64 = 0.2;
 /// Share of a body's mass in single nodes above which its fragments tell little, and above which a mean velocity does.
 const MOSTLY_SINGLE: f64 = 0.5;
 const VISIBLY_SINGLE: f64 = 0.05;
-
-/// A crack that a pressure has opened along an interface within solids, with few faces from its middle to its edge.
-fn coarse_crack(scene: &Scene) -> Option<Warning> {
-    let interfaces = scene.interfaces();
-    let crack = interfaces.coarsest_crack(&scene.solid).filter(|crack| crack.is_missing() > OPENS_TOO_LITTLE)?;
-    let [plain, smoothed] = crack.missing.map(|part| quantity(AS_IT_SHOULD / part * crack.size, "m"));
-    let text = format!(
-        "it has opened over {} with faces of {} at the edge of that within solids: linear elements are stiff there, and open such a crack by some {} too little",
-        quantity(crack.area, "m^2"),
-        quantity(crack.size, "m"),
-        percent(crack.is_missing())
-    );
-    let left = percent(AS_IT_SHOULD);
-    let remedy = if crack.is_smoothed {
-        format!("faces of {smoothed} there leave {left} of it")
-    } else {
-        format!(
-            "faces of {plain} there leave {left} of it, or of {smoothed} where the bodies beside have formulation = \"smoothed\""
-        )
-    };
-    let place = format!("interface \"{}\"", interfaces.kinds()[crack.kind as usize].name);
-    Some(Warning::new(Code::CoarseMesh, place, text).remedy(remedy))
-}
 
 /// A run at rest that ends before its end, since it has taken as many steps as it may.
 fn used_up_steps(run: &Simulation) -> Option<Warning> {

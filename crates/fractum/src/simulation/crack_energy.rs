@@ -24,6 +24,31 @@ const OPENED: f64 = 1.4;
 /// Energy at cracks over the fracture energy of their area, above which they show one face only, of smoothed and of plain elements.
 const ONE_FACE: [f64; 2] = [1.3, 1.05];
 
+/// Energy of interfaces over the most that their law takes, above which a step at rest went over a snap-back.
+const JUMPED: f64 = 1.1;
+
+/// Warns of a run at rest whose interfaces took more than their fracture energy: what the bodies set free in a jump is in it.
+pub(super) fn jumped_snap_back(scene: &Scene) -> Option<Warning> {
+    let (ledger, interfaces) = (scene.ledger(), scene.interfaces());
+    if interfaces.is_empty() || ledger[EnergyKind::Removed] != 0.0 || ledger[EnergyKind::Left] != 0.0 {
+        return None;
+    }
+    let (taken, most) = (ledger[EnergyKind::InterfaceFracture], interfaces.largest_fracture());
+    if most == 0.0 || taken <= JUMPED * most {
+        return None;
+    }
+    let text = format!(
+        "interfaces took {}, {:.2} times the fracture energy of the area that has begun to break: a step went over a snap-back, and what the bodies \
+         set free in it is counted there",
+        quantity(taken, "J"),
+        taken / most
+    );
+    let found = Warning::new(Code::CrackEnergy, "", text);
+    Some(found.remedy(
+        "follow the path of equilibrium with solver.control = \"path\", or the motion with no_equilibrium = \"motion\"",
+    ))
+}
+
 /// Warns where damage took clearly more than the fracture energy of cracks that share an opening, or clearly less than that of cracks.
 pub(super) fn crack_energy(scene: &Scene) -> Option<Warning> {
     let (ledger, solid) = (scene.ledger(), &scene.solid);
