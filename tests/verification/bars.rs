@@ -297,8 +297,10 @@ fn a_crack_of_a_wider_bar_costs_its_fracture_energy() {
     ]);
 }
 
-/// - `bars`: kind, plane, cells along and across, Poisson's ratios, seeds of meshes
-fn costs_its_energy(bars: &[(ElementKind, Plane, [u32; 2], &[f64], &[u64])]) {
+/// Kind, plane, cells along and across, Poisson's ratios, seeds of meshes.
+type Bars<'a> = (ElementKind, Plane, [u32; 2], &'a [f64], &'a [u64]);
+
+fn costs_its_energy(bars: &[Bars<'_>]) {
     let mut missed = Vec::new();
     for &(kind, plane, cells, ratios, seeds) in bars {
         // Which elements a crack takes is chance where a bar softens: the mean of several meshes.
