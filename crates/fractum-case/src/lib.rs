@@ -74,3 +74,4 @@ pub use time_function::{Field, TimeFunction};
 pub(crate) use tree::place_of;
 pub use unit::Dimension;
 pub(crate) use usual::LONGEST_ZONE;
+pub use usual::{PROCESS_ZONES, unusual};

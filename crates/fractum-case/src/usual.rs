@@ -65,6 +65,8 @@ pub(super) const FRACTURE_ENERGY: Usual = Usual {
 };
 /// Longest process zone E G_f/f_t² of a solid [m]: a longer one tells a wrong unit.
 pub(crate) const LONGEST_ZONE: f64 = 100.0;
+/// Lengths of the process zone E G_f/f_t² of solids [m]: ceramics have 0.1 mm, concrete 0.3 m.
+pub const PROCESS_ZONES: std::ops::RangeInclusive<f64> = 1e-6..=LONGEST_ZONE;
 const FRACTURE_ENERGIES: (f64, f64) = (1.0, 1e6);
 const ENERGIES: &[(&str, f64)] = &[("J/m^2", 1.0), ("N/mm", 1e3), ("kJ/m^2", 1e3)];
 
@@ -120,6 +122,21 @@ pub(super) const GAS_PRESSURE: Usual = of_stress(
     (1e5, 2e10),
     &[("MPa", 1e6), ("kPa", 1e3), ("GPa", 1e9), ("Pa", 1.0)],
 );
+
+/// The doubt about a value [SI] that a key of a material has as `text`, in one line; none of usual ones and of other keys.
+pub fn unusual(key: &str, text: &str, value: f64) -> Option<String> {
+    let usual = match key {
+        "density" => DENSITY,
+        "young_modulus" => YOUNG_MODULUS,
+        "tensile_strength" | "compressive_strength" => STRENGTH,
+        "fracture_energy" => FRACTURE_ENERGY,
+        _ => return None,
+    };
+    let place = Place { file: String::new(), line: 0, column: 0, key: key.to_owned() };
+    let node = Node { value: Value::Text(text.to_owned()), place, raw: format!("\"{text}\"") };
+    let doubt = usual.doubt(&node, value, None)?;
+    Some(format!("{}; expected {}; {}", doubt.found, usual.words, doubt.remedy))
+}
 
 impl Usual {
     /// Whether solids have such a value.

@@ -68,6 +68,22 @@ fn names_that_are_nearly_right_lead_on() {
     }
 }
 
+/// Numbers without their units made granite of 8 Pa, and a fracture energy of 3e-11 J/m², without a word.
+#[test]
+fn numbers_of_another_unit_are_refused() {
+    let place = Workplace::new("");
+    for (options, says) in [
+        (["--tensile-strength", "8"], "which is 8 Pa; expected 1 kPa to 100 GPa"),
+        (["--young-modulus", "50"], "did you mean \"50 GPa\"?"),
+        (["--density", "2.65"], "did you mean \"2.65 g/cm^3\"?"),
+        (["--toughness", "1.5"], "give each number with its unit"),
+        (["--fracture-energy", "0.0005"], "make a process zone E Gf/ft² of"),
+    ] {
+        let ended = place.fractum(&[&["material", "granite"], &options[..]].concat());
+        assert!(ended.code == Some(1) && ended.stderr.contains(says), "{options:?}: {}", ended.stderr);
+    }
+}
+
 #[test]
 fn every_material_is_listed_and_runs_in_a_template() {
     let place = Workplace::new("");

@@ -53,6 +53,8 @@ fn a_key_makes_the_movie_with_the_run_and_shows_it_in_the_report() {
     assert!(html.contains("alt=\"movie of all frames\""));
     // The same movie as that of the command, and the same page as that made later.
     assert_eq!(workplace.fractum(&["movie", "out", "-o", "later.png"]).code, Some(0));
+    let other = workplace.fractum(&["movie", "out", "-o", "later.gif"]);
+    assert!(other.code == Some(1) && other.stderr.contains("expected a name that ends with .png"), "{}", other.stderr);
     assert!(made == fs::read(workplace.path("later.png")).unwrap());
     assert_eq!(workplace.fractum(&["report", "out"]).code, Some(0));
     assert!(html == fs::read_to_string(workplace.path("out/report.html")).unwrap());

@@ -286,6 +286,24 @@ fn wrong_excavation_is_explained() {
     assert!(ended.stdout.contains("[excavated]") || ended.stderr.contains("[excavated]"), "{ended:?}");
 }
 
+/// The pull ends at 1 ms on the one clock of both stages.
+#[test]
+fn a_pulse_that_begins_before_its_stage_is_told() {
+    for (start, told) in [
+        ("0 s", Some("[no-effect]")),
+        ("0.9 ms", Some("1 ms on, where it leaps to 78.5 % of its peak")),
+        ("1 ms", None),
+    ] {
+        let pulse = format!(
+            "[[loads]]\ngroup = \"x+\"\npressure = {{ pulse = \"triangle\", peak = \"1 MPa\", start = \"{start}\", duration = \"0.2548 ms\" }}\nstages = [\"release\"]\n[[stages]]"
+        );
+        let ended = Workplace::new(&RELEASED.replacen("[[stages]]", &pulse, 1)).fractum(&["check", "case.toml"]);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert_eq!(ended.stdout.contains("before it may act"), told.is_some(), "{}", ended.stdout);
+        assert!(ended.stdout.contains(told.unwrap_or("")), "{}", ended.stdout);
+    }
+}
+
 #[test]
 fn a_displacement_that_begins_a_stage_elsewhere_is_told() {
     let second = |from: &str| {

@@ -108,6 +108,7 @@ cases = ["case.toml", "other.toml"]
         ("\"other.toml\"", "\"others.toml\"", "study.toml:11:23: no case file \"others.toml\""),
         ("cases = [", "settings = [\"rihgt\"]\ncases = [", "did you mean right?"),
         ("within = \"1 %\"", "within = \"1 m\"", "study.toml:3:10: within: "),
+        ("within = \"1 %\"", "within = \"2\"", "\"2\" is 200 %; expected a share such as \"2 %\""),
         ("study = 1", "study = 2", "the version this program reads"),
     ] {
         fs::write(place.path("study.toml"), file.replace(from, to)).unwrap();
@@ -115,7 +116,12 @@ cases = ["case.toml", "other.toml"]
         assert_eq!(ended.code, Some(1), "{to}");
         assert!(ended.stderr.contains(words), "{words} in\n{}", ended.stderr);
     }
-    for (vary, words) in [("nu", "expected KEY=a,b,c"), ("nu=1,1", "twice"), ("nu=", "a value is missing")] {
+    for (vary, words) in [
+        ("nope=1,2", "none of 2 runs has finished"),
+        ("nu", "expected KEY=a,b,c"),
+        ("nu=1,1", "twice"),
+        ("nu=", "a value is missing"),
+    ] {
         let ended = place.fractum(&["study", "case.toml", "--vary", vary]);
         assert_eq!(ended.code, Some(1));
         assert!(ended.stderr.contains(words), "{words} in\n{}", ended.stderr);

@@ -268,6 +268,11 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
     let (ramp, end) = ("{ ramp = [[\"0 s\", \"0 m/s\"], [\"0.1 ms\", \"1 mm/s\"]] }", "end = \"0.3 ms\"");
     let static_end = "kind = \"static\"\nend = \"0.3 ms\"";
     let load = |text: &str| format!("[[loads]]\ngroup = \"y+\"\n{text}\n[solver]");
+    let pulse = |start: &str| {
+        load(&format!(
+            "pressure = {{ pulse = \"half-sine\", peak = \"1 MPa\", start = \"{start}\", duration = \"0.4 ms\" }}"
+        ))
+    };
     let far_support = &BAR[BAR.rfind("[[supports]]").unwrap()..BAR.find("[solver]").unwrap()];
     let loaded_side = (far_support, "[[loads]]\ngroup = \"y+\"\npressure = \"1 kPa\"\n");
     let held_across = ("velocity = { x = ", "fix = \"yz\"\nvelocity = { x = ");
@@ -339,7 +344,10 @@ pub(crate) fn mistakes() -> Vec<Mistake> {
             &[("velocity = { x = ", "displacement = { x = "), (ramp, "\"if(t < 50 us, 0 m, 10 um)\"")],
         ),
         checked("jump", bar(), &[("[[bodies]]", DAMAGE), (ramp, "\"0.5 m/s\"")]),
+        checked("jump", bar(), &[("[solver]", &pulse("-0.1 ms"))]),
+        checked("no-effect", bar(), &[("[solver]", &pulse("-2 ms"))]),
         checked("unit-of-load", bar(), &[("[solver]", &load("pressure = 8"))]),
+        checked("unit-of-load", bar(), &[("[solver]", &load("pressure = 10"))]),
         checked(
             "unusual-value",
             bar(),

@@ -11,7 +11,7 @@ use fractum_output::number::{push_shortest, quantity};
 use fractum_output::warning::Code;
 
 use super::model_doubts::doubts_of_model;
-use crate::model::{BodyKind, Case, LoadKind, Motion, SolidBody};
+use crate::model::{Body, BodyKind, Case, LoadKind, Motion, SolidBody};
 use crate::{Diagnostic, LONGEST_ZONE, Spanned, TimeFunction};
 
 /// Largest extent of a body that is loaded as a specimen is [m]: a mesh beyond it is probably in millimetres.
@@ -26,8 +26,9 @@ const STRAIN: f64 = 1e-4;
 const BITS: f64 = 10.0;
 /// Acceleration that no centrifuge reaches [m/s²].
 const ACCELERATION: f64 = 5e3;
-/// Pressure below which nothing happens to a solid [Pa].
+/// Pressure below which nothing happens to a solid [Pa]; and the same over Young's modulus.
 const PRESSURE: f64 = 10.0;
+const SQUEEZE: f64 = 1e-9;
 /// Peak of a pulse below which nothing happens to a solid [Pa].
 const PULSE: f64 = 1e3;
 /// Instants at which expressions of time are looked at.
@@ -50,7 +51,8 @@ pub fn doubts(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(bodies.iter().filter_map(|(body, size)| doubt_of_zone(case, body, *size)));
     let of_load = |(stage, during): (&Case, [f64; 2])| {
         let loads = stage.loads.iter();
-        loads.flat_map(|load| doubts_of_load(&load.kind, during)).collect::<Vec<_>>()
+        let modulus = softest(stage).unwrap_or(0.0);
+        loads.flat_map(|load| doubts_of_load(&load.kind, during, modulus)).collect::<Vec<_>>()
     };
     doubts.extend(first_at_each_place(stages(case).flat_map(of_load)));
     if doubts.is_empty() && size > 0.0 {
@@ -211,23 +213,33 @@ fn farthest(course: &[(f64, f64)]) -> f64 {
     })
 }
 
-fn doubts_of_load(kind: &LoadKind, during: [f64; 2]) -> Vec<Diagnostic> {
+/// Smallest Young's modulus of the solids [Pa].
+fn softest(case: &Case) -> Option<f64> {
+    let modulus = |body: &Body| match &body.kind {
+        BodyKind::Solid(solid) => Some(case.materials[solid.material].young_modulus),
+        _ => None,
+    };
+    case.bodies.iter().filter_map(modulus).reduce(f64::min)
+}
+
+/// - `modulus`: smallest Young's modulus of the solids [Pa]
+fn doubts_of_load(kind: &LoadKind, during: [f64; 2], modulus: f64) -> Vec<Diagnostic> {
     let doubt = |function: &Spanned<TimeFunction>| {
         let pulse = function.value.rise().map(|[_, at]| function.value.value(at, Vec3::zeros()).abs());
         let value = pulse.map_or_else(|| course(&function.value, during).map(|own| largest(&own)), Some)?;
-        let least = if pulse.is_some() { PULSE } else { PRESSURE };
+        let least = if pulse.is_some() { PULSE } else { PRESSURE.max(SQUEEZE * modulus) };
         // An expression may be larger between the instants at which it is looked at.
         let is_bound = !matches!(&function.value, TimeFunction::Expression(field) if field.depends_on_time());
         let (unit, expected, remedy) = match kind {
             LoadKind::Gravity { .. } if value > ACCELERATION => {
-                ("m/s^2", "at most 5000 m/s^2 (the Earth has 9.81)", "did you mean mm/s^2?")
+                ("m/s^2", "at most 5000 m/s^2 (the Earth has 9.81)".to_owned(), "did you mean mm/s^2?")
             }
             LoadKind::Pressure { .. } | LoadKind::Traction { .. } if is_bound && value > 0.0 && value < least => (
                 "Pa",
                 if pulse.is_some() {
-                    "1 kPa at least (windows break at some)"
+                    "1 kPa at least (windows break at some)".to_owned()
                 } else {
-                    "10 Pa at least (the air has 100 kPa)"
+                    format!("{} at least (the air has 100 kPa)", quantity(least, "Pa"))
                 },
                 "did you mean MPa?",
             ),

@@ -21,9 +21,18 @@ const MISSED: f64 = 0.01;
 /// Instants at which a motion is looked at.
 const LOOKS: u32 = 1000;
 
-/// Doubts about the loads and motions of a stage that begins at an instant [s].
-pub(super) fn doubts_of_loads(case: &Case, begin: f64, mesh: &Mesh, bodies: &[Own]) -> Vec<Diagnostic> {
+/// Doubts about the loads and motions of a stage that begins at an instant [s], after another one.
+pub(super) fn doubts_of_loads(
+    case: &Case,
+    before: Option<&Case>,
+    begin: f64,
+    mesh: &Mesh,
+    bodies: &[Own],
+) -> Vec<Diagnostic> {
     let mut doubts: Vec<Diagnostic> = functions(case).into_iter().filter_map(|of| idle(case, of)).collect();
+    let acted = before.map_or(Vec::new(), functions);
+    let new = functions(case).into_iter().filter(|(place, _)| acted.iter().all(|(other, _)| other != place));
+    doubts.extend(new.filter_map(|of| begun(begin, of)));
     // Meshes that a command makes may not be there yet.
     let there = !bodies.is_empty() && bodies.iter().all(|body| !body.nodes.is_empty());
     if case.solver.kind == SolverKind::Explicit && mesh.whole.is_none() && there {
@@ -119,6 +128,19 @@ fn idle(case: &Case, (place, function): (&Place, &TimeFunction)) -> Option<Diagn
     let [last, end] = [last, end].map(|time| quantity(time, "s"));
     let found = format!("goes on to t = {last}, and the run ends at {end}: {} of its range is missed", percent(way));
     Some(Diagnostic::warning(Code::EndsEarly, place, found).remedy("choose a later end, or a shorter table"))
+}
+
+/// A pulse that begins before the stage in which it first acts.
+fn begun(begin: f64, (place, function): (&Place, &TimeFunction)) -> Option<Diagnostic> {
+    let [start, peak] = function.rise().filter(|[start, _]| *start < begin)?;
+    let [now, most] = [begin, peak].map(|time| function.value(time, Vec3::zeros()).abs());
+    let (code, found) = match now > 0.0 {
+        true => (Code::Jump, format!("where it leaps to {} of its peak", percent(now / most))),
+        false => (Code::NoEffect, "and is over by then".to_owned()),
+    };
+    let [start, begin] = [start, begin].map(|time| quantity(time, "s"));
+    let found = format!("begins at t = {start}, before it may act, from {begin} on, {found}");
+    Some(Diagnostic::warning(code, place, found).remedy("let it begin there or later: all stages have one clock"))
 }
 
 /// The test of a specimen whose reaction is measured, and that is loaded within few passages of a wave.

@@ -86,16 +86,16 @@ pub(super) fn doubts_of_model(case: &Case, mesh: &Mesh) -> Vec<Diagnostic> {
     doubts.extend(doubts_of_in_situ(case, mesh, &bodies));
     doubts.extend(measured_in_vain(case));
     doubts.extend(tables_in_vain(case));
-    let mut begin = 0.0;
     for (before, stage) in std::iter::once(case).chain(&case.later).zip(&case.later) {
         doubts.extend(steps_between(before, stage));
     }
+    let (mut begin, mut before) = (0.0, None);
     for stage in std::iter::once(case).chain(&case.later) {
         doubts.extend(suctions(stage, mesh));
         doubts.extend(leaps(stage, begin, mesh, &bodies));
         doubts.extend(taken_at_once(stage, mesh));
-        doubts.extend(doubts_of_loads(stage, begin, mesh, &bodies));
-        begin = stage.solver.end;
+        doubts.extend(doubts_of_loads(stage, before, begin, mesh, &bodies));
+        (begin, before) = (stage.solver.end, Some(stage));
     }
     doubts
 }

@@ -6,14 +6,11 @@ use fractum_output::warning::Code;
 
 use crate::model::{BondFailure, Damage};
 use crate::reader::Table;
-use crate::usual::{DENSITY, LONGEST_ZONE, STRENGTH, YOUNG_MODULUS, energy_meant};
+use crate::usual::{DENSITY, PROCESS_ZONES, STRENGTH, YOUNG_MODULUS, energy_meant};
 use crate::{Diagnostic, Spanned};
 
 /// Tensile strength over Young's modulus [-]: theory gives a tenth at most; the weakest soil has 1e-6.
 const STRAIN: std::ops::RangeInclusive<f64> = 1e-7..=0.2;
-
-/// Length of the process zone E G_f/f_t² [m] of solids: ceramics have 0.1 mm, concrete 0.3 m.
-const ZONE: std::ops::RangeInclusive<f64> = 1e-6..=LONGEST_ZONE;
 
 /// Speed of waves in the stiffest solids [m/s]: diamond has 18 km/s.
 const WAVE: f64 = 2e4;
@@ -68,7 +65,7 @@ pub(super) fn doubt(
     }
     let Some(law) = damage.map(|damage| &damage.value.law).filter(|_| !doubted) else { return };
     let zone = law.process_zone(young);
-    if ZONE.contains(&zone) {
+    if PROCESS_ZONES.contains(&zone) {
         return;
     }
     let place = material.place_below("damage.fracture_energy");
@@ -80,7 +77,9 @@ pub(super) fn doubt(
     let note = Diagnostic::warning(Code::UnusualValue, &place, found)
         .expected("1 um to 100 m (ceramics have 0.1 mm, concrete 0.3 m)");
     let meant = material.node_below("damage.fracture_energy");
-    let suits = |fracture_energy: f64| ZONE.contains(&DamageLaw { fracture_energy, ..law.clone() }.process_zone(young));
+    let suits = |fracture_energy: f64| {
+        PROCESS_ZONES.contains(&DamageLaw { fracture_energy, ..law.clone() }.process_zone(young))
+    };
     let meant = meant.and_then(|node| energy_meant(node, suits));
     material.reader.note(match meant {
         Some(meant) => note.remedy(format!("did you mean \"{meant}\"?")),

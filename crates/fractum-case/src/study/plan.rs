@@ -21,6 +21,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use fractum_output::number::percent;
 use fractum_output::study::run::Planned;
 use serde::Deserialize;
 use toml::{Spanned, Table, Value};
@@ -302,6 +303,7 @@ fn read(text: &str, path: &Path) -> Result<Study, Diagnostics> {
 /// What is wrong, in one line.
 pub fn parse_share(text: &str) -> Result<f64, String> {
     match parse_quantity(text, Dimension::NONE) {
+        Ok(share) if share >= 1.0 => Err(format!("\"{text}\" is {}; expected a share such as \"2 %\"", percent(share))),
         Ok(share) if share > 0.0 => Ok(share),
         Ok(_) => Err(format!("\"{text}\" is not positive; expected a share such as \"2 %\"")),
         Err(error) => Err(format!("{error}; expected a share such as \"2 %\"")),

@@ -1,10 +1,10 @@
 //! What the damage of solids has taken, by where it lies: at cracks, ahead of them, beside them.
 
-use fractum_math::Vec3;
+use fractum_math::{Vec3, numbered_parts};
 
 use crate::cracks::crack::volume_of_edge;
-use crate::cracks::crack_surface::CrackSurface;
-use crate::cracks::separation::projected_facets;
+use crate::cracks::crack_surface::{CrackFacet, CrackSurface};
+use crate::cracks::separation::{OTHER_FACE, area_without_load, projected_facets};
 use crate::solid::Solid;
 
 /// Distance from the axis of a facet, in lengths of an edge, within which the edge lies behind it.
@@ -17,6 +17,8 @@ const MOST_PAIRS: usize = 50_000_000;
 pub struct CrackCost {
     /// Fracture energy of the area that has separated [J].
     pub area: f64,
+    /// The same of its faces as if each were as flat as its rim lets it be [J]: rough faces of few elements have more than their mean plane.
+    pub flat: f64,
     /// Spent by edges of elements that are gone [J].
     pub at_cracks: f64,
     /// Spent by edges behind the faces of a crack, which it has unloaded [J].
@@ -51,6 +53,7 @@ pub fn cost_of_cracks(solid: &Solid) -> Option<CrackCost> {
     let projected = projected_facets(solid, &surface);
     let facets = || surface.facets.iter().zip(&projected);
     let area = facets().map(|(facet, (area, _))| 0.5 * area * energy_of(facet.removed.0)).sum();
+    let flat = flat_faces(&surface, &projected, |facet| area_without_load(solid, facet) * energy_of(facet.removed.0));
     let faces: Vec<(Vec3, Vec3)> =
         facets().map(|(facet, (_, normal))| (middle_of(solid, &facet.nodes), *normal)).collect();
     let (mut at_cracks, mut whole) = (0.0, Vec::new());
@@ -71,7 +74,18 @@ pub fn cost_of_cracks(solid: &Solid) -> Option<CrackCost> {
     }
     let (beside, place) = beside(&whole, &faces);
     let ahead = (whole.iter().map(|edge| edge.spent).sum::<f64>() - beside).max(0.0);
-    Some(CrackCost { area, at_cracks, beside, ahead, place })
+    Some(CrackCost { area, flat, at_cracks, beside, ahead, place })
+}
+
+/// Half of the sizes of the sums of a vector over the facets of each face; the two faces of a crack face each other.
+fn flat_faces(surface: &CrackSurface, projected: &[(f64, Vec3)], vector: impl Fn(&CrackFacet) -> Vec3) -> f64 {
+    let around = |one: u32| surface.neighbours.row(one as usize).iter().map(move |&other| [one, other]);
+    let is_face = |[one, other]: &[u32; 2]| projected[*one as usize].1.dot(&projected[*other as usize].1) > OTHER_FACE;
+    let count = surface.facets.len();
+    let (face, faces) = numbered_parts(count, (0..count as u32).flat_map(around).filter(is_face));
+    let mut sums = vec![Vec3::zeros(); faces as usize];
+    surface.facets.iter().zip(&face).for_each(|(facet, &face)| sums[face as usize] += vector(facet));
+    sums.iter().map(|sum| 0.5 * sum.norm()).sum()
 }
 
 /// What edges behind faces have spent [J], and the middle of the one that has spent most [m].

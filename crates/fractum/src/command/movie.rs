@@ -7,6 +7,9 @@ use fractum::{ExitCode, Failure};
 
 /// Pictures per second at most.
 const FASTEST: u16 = 100;
+/// Endings of the names of animated pictures.
+#[cfg(feature = "report")]
+const ENDINGS: [&str; 2] = ["png", "apng"];
 
 #[derive(Args)]
 pub(crate) struct MovieArguments {
@@ -38,6 +41,11 @@ pub(crate) fn run(arguments: &MovieArguments) -> Result<ExitCode, Failure> {
     use fractum_output::number::quantity;
     let MovieArguments { folder, output, rate, width, height, mode } = arguments;
     let output = output.clone().unwrap_or_else(|| folder.join("movie.png"));
+    let is_picture = |ending: &std::ffi::OsStr| ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known));
+    if !output.extension().is_some_and(is_picture) {
+        let found = format!("{}: the movie is an animated PNG; expected a name that ends with .png", output.display());
+        return Err(Failure::input(found));
+    }
     let settings = fractum::MovieSettings { width: *width, height: *height, rate: *rate, mode: *mode };
     let movie = fractum::movie(folder, &output, settings)?;
     let [low, high] = [movie.range.0, movie.range.1].map(|value| quantity(value, movie.unit));

@@ -142,9 +142,13 @@ pub(crate) fn run(arguments: StudyArguments) -> Result<ExitCode, Failure> {
     } else {
         run_all(&study.runs, &folders, &settings(arguments.jobs, arguments.threads, arguments.anew))
     };
-    say!("{}", collect(&study, &folders, None)?.1);
+    let (runs, text) = collect(&study, &folders, None)?;
+    say!("{text}");
     match ended {
         Err(Failure::Interrupted) => Ok(interrupted()),
+        Ok(()) if !arguments.only_tables && runs.iter().all(|run| run.measured().is_none()) => {
+            Err(Failure::input(format!("none of {} runs has finished", runs.len())))
+        }
         ended => ended.map(|()| ExitCode::Done),
     }
 }

@@ -15,7 +15,7 @@ const BESIDE: f64 = 0.2;
 /// Energy without that ahead of cracks over the fracture energy of their area, above which this is told, of smoothed and of plain elements: rough cracks
 /// through plain ones have a mean plane of 0.8 of their area.
 const TOO_MUCH: [f64; 2] = [1.12, 1.3];
-/// Energy over the fracture energy of the area below which cracks are too cheap.
+/// Energy over the fracture energy of the area, its faces as flat as they may be, below which cracks are too cheap.
 const TOO_LITTLE: f64 = 0.9;
 /// Energy ahead of cracks over that at them, above which they have only begun.
 const BEGUN: f64 = 0.5;
@@ -55,14 +55,14 @@ pub(super) fn crack_energy(scene: &Scene) -> Option<Warning> {
     let taken = ledger[EnergyKind::Damage] + ledger[EnergyKind::Removed];
     // No process has all edges of a mesh in parts.
     let cost = if is_divided(solid) { None } else { cost_of_cracks(solid) };
-    let CrackCost { area, at_cracks, beside, ahead, place } = cost?;
+    let CrackCost { area, flat, at_cracks, beside, ahead, place } = cost?;
     let mut bodies = (0..solid.body_count()).map(|body| solid.body(body));
     let is_plain = bodies.any(|body| body.damage.is_some() && body.formulation == Formulation::Standard);
-    if taken < TOO_LITTLE * area {
+    if taken < TOO_LITTLE * flat {
         let text = format!(
             "damage took {}, {} of the fracture energy of the area that has separated",
             quantity(taken, "J"),
-            percent(taken / area)
+            percent(taken / flat)
         );
         let found = Warning::new(Code::CrackEnergy, "", text);
         return Some(found.remedy(if is_plain {

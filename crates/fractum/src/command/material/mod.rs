@@ -4,7 +4,7 @@ mod known;
 
 use clap::{Args, ValueEnum};
 use fractum::{ExitCode, Failure, say};
-use fractum_case::{Dimension, nearest, parse_quantity};
+use fractum_case::{Dimension, PROCESS_ZONES, nearest, parse_quantity, unusual};
 use fractum_math::elementary::{ln, pow};
 use fractum_output::number::{percent, quantity};
 
@@ -343,7 +343,23 @@ impl Proposal {
                 "a material of your own needs --tensile-strength, or --length of a phase field",
             ));
         }
-        Ok(())
+        self.check_zone(young)
+    }
+
+    /// A number without its unit makes a process zone that no solid has.
+    fn check_zone(&self, young: f64) -> Result<(), Failure> {
+        let (Some(tension), Some(energy)) = (&self.tension, &self.energy) else { return Ok(()) };
+        let zone = young * energy.value / (tension.value * tension.value);
+        if PROCESS_ZONES.contains(&zone) {
+            return Ok(());
+        }
+        let [shortest, longest] = [PROCESS_ZONES.start(), PROCESS_ZONES.end()].map(|zone| quantity(*zone, "m"));
+        Err(Failure::input(format!(
+            "fracture energy {} and tensile strength {} make a process zone E Gf/ft² of {}; solids have {shortest} to {longest}: give each number with its unit",
+            told(energy.value, "J/m^2"),
+            told(tension.value, "Pa"),
+            quantity(zone, "m")
+        )))
     }
 
     fn show(&self, name: &str) -> Result<(), Failure> {
@@ -415,6 +431,10 @@ fn pressure(text: &Option<String>, option: &str) -> Result<Option<f64>, Failure>
 fn given(text: Option<&str>, option: &str, dimension: Dimension) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
     let value = parse_quantity(text, dimension).map_err(|error| Failure::input(format!("{option}: {error}")))?;
+    if let Some(doubt) = unusual(&option.trim_start_matches('-').replace('-', "_"), text, value).filter(|_| value > 0.0)
+    {
+        return Err(Failure::input(format!("{option} {doubt}")));
+    }
     if value > 0.0 || (dimension == Dimension::NONE && value == 0.0) {
         return Ok(Some(value));
     }
