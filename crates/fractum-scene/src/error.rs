@@ -85,7 +85,7 @@ pub enum SceneError {
     #[error(
         "at ({x:.4e}, {y:.4e}, {z:.4e}) m, a node of {bodies}, the stress as it is written leaves a force of {force:.3e} N out of balance, {share:.1e} of what the largest stress \
          does there: on a side that two bodies share both must have the same traction, outer facets that no support holds need in_situ.groups or no traction, and loads of \
-         t = 0 must belong to the stress. Take out openings in a later stage (excavate)"
+         t = 0 must belong to the stress. Take out openings in a later stage (excavate), or have the solids settle from that stress (in_situ.settle = true)"
     )]
     InSituUneven {
         /// Where [m].

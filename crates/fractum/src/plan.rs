@@ -298,11 +298,13 @@ impl Plan {
         if let Some(stress) = case.in_situ.as_ref().filter(|_| is_first) {
             self.add(
                 "in situ",
-                match stress.is_as_written() {
-                    true => "at rest at t = 0, every body with its stress as it is written",
-                    false => "at rest under the stress of the far field at t = 0; displacements count from there",
+                match (stress.is_as_written(), stress.settles) {
+                    (true, true) => "settled at t = 0 from the stress that is written; displacements count from there",
+                    (true, false) => "at rest at t = 0, every body with its stress as it is written",
+                    _ => "at rest under the stress of the far field at t = 0; displacements count from there",
                 },
             );
+            built.settled.iter().for_each(|own| self.add("settled", format!("the stress of {own}")));
         }
         if let Some(gas) = scene.gas() {
             let of = |measure| gas.measure(&scene.solid, measure, None);

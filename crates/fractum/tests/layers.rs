@@ -247,6 +247,166 @@ fn a_tunnel_in_layers_of_one_stress_is_that_in_the_far_field() {
     }
 }
 
+/// The hole that the mesh has from the start: in one material layers that settle are the far field.
+#[test]
+fn a_hole_in_layers_that_settle_is_that_in_the_far_field() {
+    let stress = "{ xx = \"sxx\", yy = \"syy\" }";
+    let both = both("kirsch-in-situ/pressurised", "kirsch-plane/medium.msh", "\"rock\"", stress);
+    let mesh = std::fs::read(both[0].path("bar.msh")).unwrap();
+    for formulation in ["smoothed", "standard"] {
+        let [far, layers] = both.each_ref().map(|place| {
+            let text = std::fs::read_to_string(place.path("case.toml")).unwrap();
+            let text = text
+                .replace("end = \"0.1 ms\"", "end = \"4 us\"")
+                // The area on which a pressure acts depends on the displacement.
+                .replace("p = \"1 MPa\"", "p = \"1 Pa\"")
+                .replace(
+                    "formulation = \"smoothed\"",
+                    &format!("formulation = \"{formulation}\"\nkinematics = \"small\""),
+                )
+                .replace("layers = [{", "settle = true\nlayers = [{");
+            run(&Workplace::with_mesh(&text, &mesh), "one", "1")
+        });
+        let [far_crown, crown] = [&far, &layers].map(|one| last(one, "crown"));
+        assert!((crown / far_crown - 1.0).abs() < 1e-9, "{formulation}: {crown} {far_crown}");
+        assert!(last(&layers, "creep").abs() < 1e-12 && energy(&layers, "residual_max_relative") < 1e-6);
+        let [far, layers] = [&far, &layers].map(|one| energy(one, "elastic"));
+        assert!((layers / far - 1.0).abs() < 1e-9, "{formulation}: {layers} {far}");
+    }
+}
+
+/// Layers of 1:10 between rollers all around, pressed unlike across their boundary: both settle to (σ₁/M₁ + σ₂/M₂)/(1/M₁ + 1/M₂) across it, and along it by
+/// ν/(1 - ν) of what changes.
+#[test]
+fn layers_that_push_unlike_settle_to_one_push() {
+    let (first, end) = (GROUND.find("[in_situ]").unwrap(), GROUND.find("[[stages]]").unwrap());
+    let sides = ["y-", "y+", "x-", "x+"].map(|side| (side, &side[..1]));
+    let cases = [
+        (false, "smoothed", "strain", 0.45, 10.0, 12.0),
+        (false, "standard", "stress", 0.2, 10.0, 12.0),
+        (true, "smoothed", "strain", 0.2, 0.1, 0.012),
+        (true, "standard", "strain", 0.0, 10.0, 12.0),
+    ];
+    for (in_space, formulation, plane, nu, ratio, size) in cases {
+        let mesh = ground(in_space, if in_space { 4 } else { 10 }, size);
+        let mut held = "[in_situ]\nsettle = true\nstress = { yy = \"-2 MPa\", xx = \"-1 MPa\", zz = \"-100 kPa\" }\n\
+                        layers = [{ bodies = [\"upper\"], stress = { yy = \"-5 MPa\", xx = \"-3 MPa\" } }]\n"
+            .to_owned();
+        let deep = in_space.then_some([("z-", "z"), ("z+", "z")]);
+        for (side, axis) in sides.into_iter().chain(deep.into_iter().flatten()) {
+            held += &format!("[[supports]]\ngroup = \"{side}\"\nfix = \"{axis}\"\n");
+        }
+        let plane_of = if in_space { String::new() } else { format!("thickness = \"2 m\"\nplane = \"{plane}\"\n") };
+        let text = format!("{}{held}{}", &GROUND[..first], &GROUND[end..])
+            .replace("fall = ", "# ")
+            .replace("material = \"", &format!("formulation = \"{formulation}\"\n{plane_of}material = \""))
+            .replace("nu = 0.2", &format!("nu = {nu}"))
+            .replace("ratio = 1 ", &format!("ratio = {ratio} "))
+            .replace("size = \"12 m\"", "");
+        let (stages, probes) = (text.find("[[stages]]").unwrap(), text.find("[[probes]]").unwrap());
+        let alone = format!("[solver]\nend = \"{} s\"\n", 0.01 * size / 12.0);
+        for moving in [false, true] {
+            let name = format!("in space: {in_space}, {formulation}, {plane}, {nu}, {ratio}, {size}, {moving}");
+            let text = if moving { format!("{}{alone}{}", &text[..stages], &text[probes..]) } else { text.clone() };
+            let place = place(&text, &mesh);
+            let one = run(&place, "one", "1");
+            let push = -(5e6 * ratio + 2e6) / (ratio + 1.0);
+            let along = if plane == "stress" { nu } else { nu / (1.0 - nu) };
+            let depth = if in_space { size } else { 2.0 };
+            let names = ["time", "yy_upper", "xx_upper", "xx_lower", "base", "zz_core", "kinetic", "elastic"];
+            let rows = history(&place, "one", &names);
+            let before: Vec<_> = rows.iter().filter(|row| moving || row[0] <= 1.0).collect();
+            assert!(before.len() > 1, "{name}");
+            let base = before.last().unwrap()[4];
+            assert!((base / (-push * size * depth) - 1.0).abs() < 1e-9, "{name}: {base}");
+            for row in before {
+                let near = |found: f64, exact: f64| (found - exact).abs() < 5e-3;
+                assert!(near(row[1], push) && near(row[2], -3e6 + along * (push + 5e6)), "{name}: {row:?}");
+                assert!(near(row[3], -1e6 + along * (push + 2e6)), "{name}: {row:?}");
+                assert!(row[6] < 1e-14 * row[7], "{name}: {row:?}");
+                assert!(plane == "stress" || near(row[5], -1e5 + along * (push + 2e6)), "{name}: {row:?}");
+            }
+            // The change is in yy.
+            let told = one["warnings"].to_string();
+            let share = 100.0 * (push + 5e6) / 5e6;
+            assert!(share < 5.0 || told.contains(&format!("{share:.3} % in the mean")), "{name}: {share} {told}");
+            let share = 100.0 * (push + 2e6).abs() / 2e6;
+            assert!(share < 5.0 || told.contains(&format!("{share:.3} % in the mean")), "{name}: {share} {told}");
+            assert!(energy(&one, "residual_max_relative") < 1e-5, "{name}: {}", one["energy"]);
+            let last = rows.last().unwrap();
+            assert!(moving || (last[4] + push * size * depth).abs() > 1e-4 * push.abs() * size * depth, "{name}");
+        }
+    }
+}
+
+/// Layers of 1:10 whose boundary dips by 1 in 4. A jump along it alone stays; else the traction becomes the same on both of its sides.
+#[test]
+fn layers_that_dip_settle_to_one_traction() {
+    let off = [16, 32].map(|cells| ["standard", "smoothed"].map(|formulation| jump_across_a_dip(cells, formulation)));
+    for [coarse, fine] in [0, 1].map(|formulation| off.map(|off| off[formulation])) {
+        assert!(fine < 0.06 && fine < 0.6 * coarse, "{off:?}");
+    }
+}
+
+/// Jump of the traction between the rows of elements beside the boundary, over that which is written.
+fn jump_across_a_dip(cells: u32, formulation: &str) -> f64 {
+    let (size, slope) = (12.0, 0.25);
+    let mut mesh = ground(false, cells, size);
+    let middle = 0.5 * size;
+    for node in &mut mesh.nodes {
+        node.y += slope * (node.x - middle) * (1.0 - (node.y - middle).abs() / middle);
+    }
+    let beside = |element: &[u32; 3]| {
+        let at = element.iter().map(|&node| mesh.nodes[node as usize]).sum::<Vec3>() / 3.0;
+        let over = at.y - middle - slope * (at.x - middle);
+        ((at.x - middle).abs() < 0.25 * size && over.abs() < size / f64::from(cells)).then_some(over > 0.0)
+    };
+    for (tag, name) in [(201, "above"), (202, "below")] {
+        let is_own = |element: &&(u32, &[u32; 3])| beside(element.1) == Some(name == "above");
+        let triangles = (0..).zip(&mesh.triangles).filter(|own| is_own(&own)).map(|(index, _)| index).collect();
+        mesh.groups.push(Group { name: name.into(), dimension: 2, tag, triangles, ..Group::default() });
+    }
+    let probes = ["above", "below"].map(|group| {
+        ["xx", "yy", "xy"].map(|component| {
+            format!("[[probes]]\nname = \"{component}_{group}\"\nstress = {{ group = \"{group}\", component = \"{component}\" }}\n")
+        })
+    });
+    let probes = probes.concat().concat();
+    // Along the boundary alone: t ⊗ t.
+    let [xx, yy, xy] = [1.0, slope * slope, slope].map(|share| -4.0 * share / (1.0 + slope * slope));
+    let even = format!("xx = \"{} MPa\", yy = \"{} MPa\", xy = \"{xy} MPa\"", xx - 1.0, yy - 2.0);
+    let with = |lower: &str, settles: bool| {
+        let held = format!(
+            "[in_situ]\nsettle = {settles}\ngroups = [\"x-\", \"x+\", \"y+\"]\nstress = {{ {lower} }}\n\
+             layers = [{{ bodies = [\"upper\"], stress = {{ xx = \"-1 MPa\", yy = \"-2 MPa\" }} }}]\n\
+             [[supports]]\ngroup = \"y-\"\nfix = \"xy\"\n[solver]\nend = \"2 ms\"\n"
+        );
+        let text = GROUND
+            .replace("fall = ", "# ")
+            .replace("size = \"12 m\"", "")
+            .replace("200 MPa", "200 GPa")
+            .replace("ratio = 1 ", "ratio = 10 ")
+            .replace("material = \"", &format!("formulation = \"{formulation}\"\nmaterial = \""));
+        let (first, end) = (text.find("[in_situ]").unwrap(), text.find("[[probes]]").unwrap());
+        place(&format!("{}{held}{}{probes}", &text[..first], &text[end..]), &mesh)
+    };
+    let [fixed, settled] = [false, true].map(|settles| run(&with(&even, settles), "one", "1"));
+    let [fixed_energy, settled_energy] = [&fixed, &settled].map(|one| energy(one, "elastic"));
+    assert!((settled_energy / fixed_energy - 1.0).abs() < 1e-9, "{fixed_energy} {settled_energy}");
+    assert!(!settled["warnings"].to_string().contains("shared-stress"), "{}", settled["warnings"]);
+    let place = with("xx = \"-5 MPa\", yy = \"-2 MPa\"", true);
+    let one = run(&place, "one", "1");
+    assert!(energy(&one, "external").abs() < 1e-12 * energy(&one, "elastic"), "{}", one["energy"]);
+    let row = history(&place, "one", &["kinetic", "elastic"]).pop().unwrap();
+    assert!(row[0] < 1e-14 * row[1], "{row:?}");
+    let traction = |group: &str| {
+        let [xx, yy, xy] = ["xx", "yy", "xy"].map(|component| last(&one, &format!("{component}_{group}")));
+        [xy - slope * xx, yy - slope * xy]
+    };
+    let [above, below] = ["above", "below"].map(traction);
+    f64::hypot(above[0] - below[0], above[1] - below[1]) / (4e6 * slope)
+}
+
 #[test]
 fn a_strut_with_a_stress_as_written_vibrates_as_one_that_is_pressed() {
     let [far, layers] = both("modes/strut", "modes/strut.msh", "\"strut\"", "{ xx = \"ratio*euler\" }")
@@ -298,14 +458,15 @@ fn layers_of_unlike_stiffness_have_one_stress_where_it_is_written() {
 fn layers_have_the_same_bits_on_any_threads_and_after_a_resume() {
     let text = written(false, "smoothed")
         .replace("kind = \"static\", end = \"2 s\", step = \"0.5 s\"", "kind = \"explicit\", end = \"1.05 s\"");
-    let place = place(&format!("{text}[output]\ncheckpoint = {{ steps = 8 }}\n"), &ground(false, 10, 12.0));
-    let one = run(&place, "one", "1");
-    assert!(energy(&one, "kinetic") > 0.0 && energy(&one, "residual_max_relative") < 1e-6, "{}", one["energy"]);
-    for threads in ["2", "7"] {
+    let settling = text.replace("[in_situ]", "[in_situ]\nsettle = true").replacen("-1800 kg", "-2000 kg", 1);
+    for (text, threads) in [(text, "7"), (settling, "2")] {
+        let place = place(&format!("{text}[output]\ncheckpoint = {{ steps = 8 }}\n"), &ground(false, 10, 12.0));
+        let one = run(&place, "one", "1");
+        assert!(energy(&one, "kinetic") > 0.0 && energy(&one, "residual_max_relative") < 1e-6, "{}", one["energy"]);
         assert_eq!(one["state_hash"], run(&place, threads, threads)["state_hash"]);
+        assert_eq!(one["state_hash"], resumed(&place, threads)["state_hash"]);
+        assert_eq!(summary(&place, threads)["energy"], one["energy"]);
     }
-    assert_eq!(one["state_hash"], resumed(&place, "2")["state_hash"]);
-    assert_eq!(summary(&place, "2")["energy"], one["energy"]);
 }
 
 /// Strength is judged by the stress that is written, of all formulations, and heat adds its own.
@@ -366,6 +527,7 @@ fn stress_that_is_out_of_balance_is_told_with_its_place() {
     let mesh = ground(false, 8, 12.0);
     let layer = "bodies = [\"lower\", \"core\"]";
     for (from, to, words) in [
+        ("groups = [\"x+\"]", "groups = []", "have the solids settle from that stress (in_situ.settle = true)"),
         ("groups = [\"x+\"]", "groups = []", "a node of \"lower\", the stress as it is written leaves a force of"),
         (
             "(size - y)\", xx",
@@ -375,7 +537,7 @@ fn stress_that_is_out_of_balance_is_told_with_its_place() {
         (
             "gravity = { y = \"-fall\" }",
             "gravity = { y = \"-0.9*fall\" }",
-            "expected a stress of this body that grows with its weight",
+            "expected a stress of this body that grows with its weight, and gravity among the loads; or in_situ.settle = true",
         ),
         (layer, "bodies = [\"lower\"]", "in_situ.layers give no stress to \"core\""),
         (layer, "bodies = [\"lower\", \"cor\"]", "= \"cor\" is no solid body; did you mean \"core\"?"),

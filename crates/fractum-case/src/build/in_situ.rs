@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use fractum_fem::fields::element_fields;
-use fractum_fem::{Body, ElementKind, Solid};
+use fractum_fem::{Body, Solid};
 use fractum_math::{Sym3, Vec3};
 use fractum_output::number::quantity;
 use fractum_output::warning::Code;
@@ -15,7 +14,7 @@ use super::Context;
 use super::bodies::Numbering;
 use super::body_doubts::named;
 use super::conditions::{Surface, sorted};
-use super::in_situ_layers::{bodies_of_sides, bodies_there, check_layers, largest_of, strain_of};
+use super::in_situ_layers::{bodies_of_sides, bodies_there, check_layers, components, largest_of, strain_of, stresses};
 use crate::Diagnostic;
 use crate::model::{Case, InSitu, LoadKind, Selection, StressField};
 
@@ -64,7 +63,7 @@ pub(super) fn in_situ_loads(
     if context.case.is_first_stage() && on.is_empty() && !is_held && context.diagnostics.is_empty() {
         context.error(&stress.place, ": it acts on no facet", "absorbing or elastic supports, or groups of facets");
     }
-    if context.case.is_first_stage() {
+    if context.case.is_first_stage() && !stress.settles {
         check_weight(context, stress, &fields, solid);
     }
     if let (true, true, Some(field)) = (context.diagnostics.is_empty(), context.case.is_first_stage(), fields.far()) {
@@ -81,24 +80,16 @@ pub(super) fn shared(case: &Case, solid: &Solid) -> Option<Diagnostic> {
     if there.iter().all(|&body| is_alike(solid.body(first), solid.body(body))) {
         return None;
     }
-    let counts = |component: usize| !solid.is_plane() || [0, 1, 3].contains(&component);
     let mut largest = 0.0f64;
     let mut worst: Option<(f64, usize, usize, [f64; 2])> = None;
     for body in there {
         let (mut volume, mut found, mut asked) = (0.0, Sym3::ZERO, Sym3::ZERO);
-        let is_plane = solid.body(body).shape == ElementKind::T3;
-        for (element, (own, _)) in solid.body(body).elements.iter().zip(element_fields(solid, body, None)) {
-            let corners = element.map(|node| solid.reference[node as usize]);
-            let [a, b, c] = [1, 2, 3].map(|k| corners[k] - corners[0]);
-            let (size, middle) = match is_plane {
-                true => (a.cross(&b).norm(), corners[..3].iter().sum::<Vec3>() / 3.0),
-                false => (a.cross(&b).dot(&c).abs(), corners.iter().sum::<Vec3>() / 4.0),
-            };
+        for (size, middle, own) in stresses(solid, body) {
             let far = stress.at(middle);
             largest = largest.max(largest_of(far));
             (volume, found, asked) = (volume + size, found + own * size, asked + far * size);
         }
-        for component in (0..6).filter(|&component| counts(component)) {
+        for component in components(solid) {
             let [found, asked] = [found, asked].map(|sum| sum.0[component] / volume);
             if worst.is_none_or(|(off, ..)| (found - asked).abs() > off) {
                 worst = Some(((found - asked).abs(), body, component, [found, asked]));
@@ -221,7 +212,8 @@ fn check_weight(context: &mut Context<'_>, stress: &InSitu, fields: &Fields, sol
         let expected = if is_one {
             format!("gravity {name} = \"{fitting}\" among the loads, or a stress that goes with it")
         } else if fields.is_as_written {
-            "a stress of this body that grows with its weight, and gravity among the loads".to_owned()
+            "a stress of this body that grows with its weight, and gravity among the loads; or in_situ.settle = true"
+                .to_owned()
         } else {
             "bodies of one density, since the stress is linear; or a stress of each body that goes with its weight, by in_situ.layers"
                 .to_owned()

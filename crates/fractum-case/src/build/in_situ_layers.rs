@@ -1,17 +1,36 @@
 //! In-situ stress that bodies have as it is written: their elastic strain, and the body behind every facet on which it acts.
 
 use std::collections::HashMap;
+use std::fmt;
 
+use fractum_fem::fields::element_fields;
 use fractum_fem::{Body, ElementKind, Plane, Solid, Stiffness, motion};
 use fractum_math::{Mat3, Sym3, Vec3};
+use fractum_output::warning::Code;
 use nalgebra::{Matrix6, Vector6};
 
 use super::Context;
 use super::conditions::sorted;
+use crate::Diagnostic;
 use crate::model::{Case, InSitu};
 
 /// Across the plane.
 const ZZ: usize = 2;
+/// Mean change of stress in a body that settles, over the largest component that is written there, above which it is told.
+const SETTLED: f64 = 0.05;
+
+/// How far the stress of a body has changed as the solids settled: the largest component of the change, over the largest that is written in the body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settled {
+    /// Name of the body.
+    pub body: String,
+    /// Mean over its volume.
+    pub mean: f64,
+    /// In the element in which it is largest.
+    pub largest: f64,
+    /// Middle of that element [m].
+    pub place: Vec3,
+}
 
 /// Numbers of the bodies that are there.
 pub(super) fn bodies_there(case: &Case, solid: &Solid) -> Vec<usize> {
@@ -56,6 +75,79 @@ pub(super) fn begin_as_written(case: &Case, solid: &mut Solid) -> Option<f64> {
         motion::begin_strained(solid, index, strain);
     }
     Some(largest)
+}
+
+/// How far the solids have settled from the stress that is written; nothing where they do not.
+pub(super) fn settled(case: &Case, solid: &Solid) -> Vec<Settled> {
+    let Some(stress) = case.in_situ.as_ref().filter(|stress| stress.settles) else { return Vec::new() };
+    let of_body = |body: usize| {
+        let name = &solid.body(body).name;
+        let field = stress.of(name)?;
+        let (mut volume, mut sum, mut written) = (0.0, 0.0, 0.0f64);
+        let mut most = (0.0, Vec3::zeros());
+        for (size, middle, own) in stresses(solid, body) {
+            let asked = field.at(middle);
+            let off = components(solid).map(|c| (own.0[c] - asked.0[c]).abs()).fold(0.0, f64::max);
+            (volume, sum, written) = (volume + size, sum + off * size, written.max(largest_of(asked)));
+            most = if off > most.0 { (off, middle) } else { most };
+        }
+        let (largest, place) = most;
+        Some((Settled { body: name.clone(), mean: sum / volume, largest, place }, written))
+    };
+    let found: Vec<(Settled, f64)> = bodies_there(case, solid).into_iter().filter_map(of_body).collect();
+    let most = found.iter().map(|own| own.1).fold(0.0, f64::max);
+    let over_written = |(own, written): (Settled, f64)| {
+        // A body that has none at first is measured by the others.
+        let scale = if written > 0.0 { written } else { most.max(f64::MIN_POSITIVE) };
+        Settled { mean: own.mean / scale, largest: own.largest / scale, ..own }
+    };
+    found.into_iter().map(over_written).collect()
+}
+
+/// Bodies whose stress has changed much as they settled.
+pub(super) fn settled_far(case: &Case, settled: &[Settled]) -> Vec<Diagnostic> {
+    let Some(stress) = &case.in_situ else { return Vec::new() };
+    let tell = |own: &Settled| {
+        let place = stress.of(&own.body).map_or(&stress.place, |field| &field.place);
+        let found = format!(": as the solids settled, the stress of body {own}");
+        Diagnostic::warning(Code::SharedStress, place, found).remedy(
+            "a stress with the same traction on both sides of every boundary between layers, that goes with the weight and with the loads of t = 0, on outer \
+             facets that supports or in_situ.groups hold, stays as it is written; around an opening it changes",
+        )
+    };
+    settled.iter().filter(|own| own.mean > SETTLED).map(tell).collect()
+}
+
+impl fmt::Display for Settled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Settled { body, mean, largest, place } = self;
+        let [mean, largest] = [mean, largest].map(|share| 100.0 * share);
+        let [x, y, z] = (*place).into();
+        write!(
+            f,
+            "\"{body}\" changed by {mean:.3} % in the mean and by {largest:.3} % at most, at ({x:.4e}, {y:.4e}, {z:.4e}) m, of the largest that is written there"
+        )
+    }
+}
+
+/// Components of stress that bodies balance: those in the plane of plane ones.
+pub(super) fn components(solid: &Solid) -> impl Iterator<Item = usize> + use<> {
+    let is_plane = solid.is_plane();
+    (0..6).filter(move |component| !is_plane || [0, 1, 3].contains(component))
+}
+
+/// Size, middle [m] and stress [Pa] of the elements of a body; sizes are over the same of all.
+pub(super) fn stresses(solid: &Solid, body: usize) -> impl Iterator<Item = (f64, Vec3, Sym3)> {
+    let own = solid.body(body);
+    own.elements.iter().zip(element_fields(solid, body, None)).map(|(element, (stress, _))| {
+        let corners = element.map(|node| solid.reference[node as usize]);
+        let [a, b, c] = [1, 2, 3].map(|k| corners[k] - corners[0]);
+        let (size, middle) = match own.shape {
+            ElementKind::T3 => (a.cross(&b).norm(), corners[..3].iter().sum::<Vec3>() / 3.0),
+            ElementKind::T4 => (a.cross(&b).dot(&c).abs(), corners.iter().sum::<Vec3>() / 4.0),
+        };
+        (size, middle, stress)
+    })
 }
 
 /// Elastic strain of a stress in a body.

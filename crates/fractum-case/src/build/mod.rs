@@ -50,6 +50,7 @@ mod turns;
 pub use contacts::PreparedFacets;
 pub use division::{Replication, SolidDivision, cannot_divide, divide, replicated_bodies, replication};
 pub use doubts::doubts;
+pub use in_situ_layers::Settled;
 pub use interfaces::{cut_mesh, process_zone};
 pub use network::cut_network;
 pub use notches::is_notched;
@@ -108,6 +109,8 @@ pub struct BuiltScene {
     pub ties: Vec<TieReport>,
     /// Bodies with Weibull's strength, solids first.
     pub weibull: Vec<WeibullReport>,
+    /// How far the bodies have settled from the in-situ stress that is written; empty where they do not.
+    pub settled: Vec<Settled>,
     /// Whether heat is conducted alone.
     pub conducts_alone: bool,
     /// Doubts that building it has shown, which do not keep the scene from running; not those of [`doubts`] about the case.
@@ -294,6 +297,9 @@ impl<'a> Context<'a> {
         let scene = heat::with_heat(self, scene, &parts, &numbering, &surface, &mut warnings)?;
         let scene = excavation::with_excavation(self.case, scene, &parts);
         let scene = self.made_ready(scene, &probes, &mut warnings)?;
+        let first = self.case.is_first_stage();
+        let settled = if first { in_situ_layers::settled(self.case, &scene.solid) } else { Vec::new() };
+        warnings.extend(in_situ_layers::settled_far(self.case, &settled));
         Some(BuiltScene {
             statics: statics.filter(|_| statics::is_held(self, &scene)),
             scene,
@@ -308,6 +314,7 @@ impl<'a> Context<'a> {
             boundary,
             ties: ties.reports,
             weibull: std::mem::take(&mut self.weibull),
+            settled,
             conducts_alone: self.case.solver.kind == SolverKind::Heat,
             warnings,
         })
@@ -406,7 +413,7 @@ impl<'a> Context<'a> {
         // Later stages begin with the state of those before.
         if let Some(stress) = self.case.in_situ.as_ref().filter(|_| self.case.is_first_stage()) {
             let as_written = in_situ_layers::begin_as_written(self.case, &mut scene.solid);
-            if let Err(error) = scene.start_at_rest(as_written) {
+            if let Err(error) = scene.start_at_rest(as_written.filter(|_| !stress.settles)) {
                 self.error(&stress.place.clone(), format!(": {error}"), "");
                 return None;
             }

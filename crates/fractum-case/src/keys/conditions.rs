@@ -73,6 +73,7 @@ pub(super) static KEYS: &[KeyDoc] = &[
     key("in_situ.layers[].stress.xy", K::Field(D::PRESSURE), "0", "Component xy"),
     key("in_situ.layers[].stress.yz", K::Field(D::PRESSURE), "0", "Component yz"),
     key("in_situ.layers[].stress.zx", K::Field(D::PRESSURE), "0", "Component zx"),
+    key("in_situ.settle", K::Flag, "false", "With layers: true has the solids settle from the stress that is written to equilibrium before t = 0, by one elastic solution. Displacements count from there, and a warning tells how far the stress has changed"),
     key("in_situ.groups", K::Names, "none", "Mesh groups of facets on which it acts, besides those of absorbing and elastic supports"),
     key("TIME_FUNCTION", K::Table, "", "Table form of any time function: one of ramp, smooth_ramp, table, pulse"),
     key("TIME_FUNCTION.ramp", K::Points, "", "Pairs of time and value joined by straight lines, constant outside"),

@@ -43,6 +43,8 @@ pub struct InSitu {
     pub stress: Option<StressField>,
     /// Bodies that have a stress of their own, as it is written.
     pub layers: Vec<Layer>,
+    /// Whether elastic bodies settle from the stress of layers to equilibrium before the run; else it must be in equilibrium.
+    pub settles: bool,
     /// Groups of facets on which it acts, besides those of absorbing and elastic supports.
     pub groups: Vec<Spanned<String>>,
 }

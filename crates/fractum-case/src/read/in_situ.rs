@@ -17,6 +17,13 @@ pub(super) fn read(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<I
     if far.is_none() && layers.is_empty() {
         tell_missing(&table);
     }
+    if table.has("settle") && layers.is_empty() {
+        let note = Diagnostic::error(&table.place_of("settle"), "has no effect without layers");
+        table.reader.note(
+            note.expected("in_situ.layers; the stress of a far field is always that of solids that have settled"),
+        );
+    }
+    let settles = table.flag("settle").or(false);
     let named: Vec<&Spanned<String>> = layers.iter().flatten().flat_map(|layer| &layer.bodies).collect();
     bodies.into_iter().for_each(|bodies| check_names(&table, &named, bodies));
     let place = table.place.clone();
@@ -26,7 +33,7 @@ pub(super) fn read(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<I
         None if layers.is_empty() => return None,
         None => None,
     };
-    Some(Some(InSitu { place, stress, layers: layers.into_iter().collect::<Option<_>>()?, groups: groups? }))
+    Some(Some(InSitu { place, stress, layers: layers.into_iter().collect::<Option<_>>()?, settles, groups: groups? }))
 }
 
 fn layer(table: Table<'_>) -> Option<Layer> {

@@ -177,6 +177,10 @@ fn mistakes_in_blasts_are_told_where_they_stand() {
             "19:1: in_situ.stress is missing; expected a table such as { xx = \"-5 MPa\", yy = \"-8 MPa\" }",
         ),
         (
+            "gravity = { x = 1 }\n[in_situ]\nstress = { xx = 1 }\nsettle = true",
+            "21:10: in_situ.settle has no effect without layers; expected in_situ.layers; the stress of a far field is always that of solids that have settled",
+        ),
+        (
             "gravity = { x = 1 }\n[in_situ]\nstress = { xx = 1 }\ngroups = \"a\"",
             "21:10: in_situ.groups = \"a\"; expected a list of names of mesh groups",
         ),

@@ -30,8 +30,8 @@ impl Scene {
     /// Rigid motions that no support prevents are left out: loads in balance need nothing to hold them. What supports hold stays at the
     /// displacement that it has: that of the far field, where they could not follow it.
     ///
-    /// - `as_written`: largest component of the stress that bodies have without a displacement [Pa], which must be in equilibrium; none where
-    ///   the loads make the stress
+    /// - `as_written`: largest component of the stress that bodies have without a displacement [Pa], where that must be in equilibrium; else the
+    ///   solids move to it
     ///
     /// # Errors
     /// [`SceneError::InSituUnbalanced`], [`SceneError::InSituUneven`], [`SceneError::InSituBreaks`] and [`SceneError::InSituUnsolved`].
@@ -46,14 +46,18 @@ impl Scene {
         let springs: Vec<Spring> = firm.iter().map(spring).collect();
         system.prepare(self, &self.solid.cell_damage(), &springs).map_err(|error| unsolved(error.to_string()))?;
         let mut change = vec![Vec3::zeros(); self.solid.reference.len()];
+        // Before the forces, in which edges over their strength would be damaged.
+        check_strength(self)?;
         if let Some(largest) = as_written {
-            // Before the forces, in which edges over their strength would be damaged.
-            check_strength(self)?;
             forces_at_start(self, &held, &firm);
             check_evenness(&self.solid, self.supports.held(), &joined, largest)?;
         }
+        let mut at_first = 0.0;
         for _ in 0..MOST_SOLUTIONS {
             let (missing, scale) = forces_at_start(self, &held, &firm);
+            // Stress that has nothing to carry it goes: no force is left.
+            at_first = f64::max(at_first, missing);
+            let scale = scale.max(at_first);
             if missing <= TOLERANCES[1] * scale {
                 check_strength(self)?;
                 check_pins(self, &held, scale)?;
