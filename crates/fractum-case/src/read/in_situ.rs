@@ -18,7 +18,7 @@ pub(super) fn read(root: &Table<'_>, bodies: Option<&[Body]>) -> Option<Option<I
         tell_missing(&table);
     }
     if table.has("settle") && layers.is_empty() {
-        let note = Diagnostic::error(&table.place_of("settle"), "has no effect without layers");
+        let note = Diagnostic::error(&table.place_below("settle"), "has no effect without layers");
         table.reader.note(
             note.expected("in_situ.layers; the stress of a far field is always that of solids that have settled"),
         );
