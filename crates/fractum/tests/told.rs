@@ -465,6 +465,17 @@ fn a_ball_that_presses_on_few_nodes_is_told() {
             assert!(site == "body \"block\"" && text.contains("\"ball\" presses on 1 node of \"block\""), "{text}");
         }
     }
+    // A quarter of a block has a quarter of the nodes: it is told where the whole block is.
+    let quarter = mesh_bytes(&structured_box([8, 8, 8], Vec3::new(0.02, 0.02, 0.02), None), MshFormat::V4_1Binary);
+    let symmetry = "[[supports]]\ngroup = \"x-\"\nfix = \"x\"\n[[supports]]\ngroup = \"y-\"\nfix = \"y\"\n[solver]";
+    for (radius, words) in [("0.66 m", None), ("0.1 m", Some("3 nodes of \"block\""))] {
+        let case = PRESSED_BALL.replace("4 m", radius).replace("\"20 mm\", \"20 mm\"", "\"0 m\", \"0 m\"");
+        let place = Workplace::with_mesh(&case.replace("[solver]", symmetry), &quarter);
+        run(&place, "out", "1");
+        let found = listed(&place, "out").into_iter().find(|[code, ..]| code == "coarse-mesh");
+        assert_eq!(found.is_some(), words.is_some(), "{radius}: {found:?}");
+        assert!(found.is_none_or(|[.., text]| text.contains(words.unwrap())), "{radius}");
+    }
     // A thin plate on its rim bends, and how it gives way beside the ball counts for little.
     let plate = mesh_bytes(&structured_box([8, 8, 3], Vec3::new(0.04, 0.04, 0.002), None), MshFormat::V4_1Binary);
     let case = PRESSED_BALL.replace("\"4 m\"", "\"5 mm\"").replace("R + 20 mm", "R + 2 mm");

@@ -71,14 +71,14 @@ pub(super) fn long_steps(case: &Case, heat: &Heat, scene: &Scene) -> Option<Diag
 
 /// Whether a condition changes anything within the run.
 fn acts(heat: &Heat, made: &HeatCondition, scene: &Scene, end: f64) -> bool {
-    let places = [scene.solid.reference.as_slice(), scene.bonded.reference()].concat();
+    let places = || scene.solid.reference.iter().chain(scene.bonded.reference());
     let (points, value, from_start): (Vec<u32>, _, _) = match made {
         HeatCondition::Temperature { points, value } => (points.clone(), value, true),
         HeatCondition::Supply { points, value } => (points.iter().map(|own| own.0).collect(), value, false),
         HeatCondition::Convection { points, ambient, .. } => (points.iter().map(|own| own.0).collect(), ambient, true),
     };
     points.iter().step_by(points.len().div_ceil(10).max(1)).any(|&point| {
-        let place = places[point as usize];
+        let Some(&place) = places().nth(point as usize) else { return false };
         let before = if from_start { heat.initial.value.at(place) } else { 0.0 };
         (0..=LOOKS).any(|look| {
             let now = value(end * f64::from(look) / f64::from(LOOKS), &place);

@@ -1,9 +1,12 @@
 //! Balls that press on few nodes of a solid: what an element gives way there counts for more than the contact does.
 
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
 use fractum_contact::Shape;
-use fractum_fem::{ElementKind, Formulation};
+use fractum_fem::{Body, ElementKind, Formulation};
 use fractum_math::Vec3;
-use fractum_math::elementary::pow;
+use fractum_math::elementary::{atan2, pow};
 
 use crate::contacts::NodesOnShape;
 use crate::scene::Scene;
@@ -53,13 +56,38 @@ fn coarse(scene: &Scene, ground: &NodesOnShape) -> Option<Indentation> {
         return None;
     }
     let force: Vec3 = touching().map(|c| c.force).sum();
-    let modulus = of_body.elastic.young_modulus / (1.0 - of_body.elastic.poisson_ratio.powi(2));
-    let depth = pow(0.75 * force.norm() / (modulus * radius.sqrt()), 2.0 / 3.0);
     let along = force.normalize();
-    let way = touching().map(|c| solid.displacement[c.node as usize].dot(&along)).fold(0.0, f64::max);
+    let ways = touching().map(|c| (c.node, solid.displacement[c.node as usize].dot(&along)));
+    let (pole, way) = ways.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    // A half or a quarter of a body, cut along its planes of symmetry, has a part of the nodes and of the force.
+    let angles = solid_angles(of_body, &solid.reference, touching().map(|c| c.node));
+    let share = angles[&pole] / TAU;
+    let whole = angles.values().sum::<f64>() / angles[&pole];
+    if whole >= NODES[kind] as f64 - 0.5 {
+        return None;
+    }
+    let modulus = of_body.elastic.young_modulus / (1.0 - of_body.elastic.poisson_ratio.powi(2));
+    let depth = pow(0.75 * force.norm() / (share * modulus * radius.sqrt()), 2.0 / 3.0);
     if depth < INDENTS * way || way <= 0.0 {
         return None;
     }
     let contact = (radius * depth).sqrt();
-    Some(Indentation { rigid_body, body, nodes, wanted: NODES[kind], radius: contact, size: contact / SIZES[kind] })
+    let wanted = (NODES[kind] as f64 * nodes as f64 / whole).ceil() as usize;
+    Some(Indentation { rigid_body, body, nodes, wanted, radius: contact, size: contact / SIZES[kind] })
+}
+
+/// Solid angles that the elements of a body fill around nodes [sr]: 2π in a flat surface, π where that ends at a plane of symmetry.
+fn solid_angles(body: &Body, places: &[Vec3], nodes: impl Iterator<Item = u32>) -> BTreeMap<u32, f64> {
+    let mut found: BTreeMap<u32, f64> = nodes.map(|node| (node, 0.0)).collect();
+    for element in body.elements.iter() {
+        for corner in 0..4 {
+            let Some(angle) = found.get_mut(&element[corner]) else { continue };
+            let apex = places[element[corner] as usize];
+            let [a, b, c] = [1, 2, 3].map(|k| (places[element[(corner + k) % 4] as usize] - apex).normalize());
+            // Van Oosterom & Strackee 1983.
+            let volume = a.dot(&b.cross(&c)).abs();
+            *angle += 2.0 * atan2(volume, 1.0 + a.dot(&b) + b.dot(&c) + c.dot(&a));
+        }
+    }
+    found
 }
